@@ -1,0 +1,58 @@
+# Compiler settings shared by every target: language level, warnings, sanitizers, ccache.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+option(PILEUS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
+set(PILEUS_SANITIZER "" CACHE STRING "address, undefined, thread or empty")
+
+find_program(PILEUS_CCACHE ccache)
+if(PILEUS_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${PILEUS_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PILEUS_CCACHE})
+endif()
+
+# Every in-tree target links this: warnings and the floating-point rules that keep results
+# bitwise reproducible (no contraction that could differ between a vector body and its tail).
+add_library(pileus_build INTERFACE)
+target_compile_options(
+  pileus_build INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                         -ffp-contract=off -fno-math-errno)
+if(PILEUS_WARNINGS_AS_ERRORS)
+  target_compile_options(pileus_build INTERFACE -Werror)
+endif()
+if(PILEUS_SANITIZER)
+  target_compile_options(pileus_build INTERFACE -fsanitize=${PILEUS_SANITIZER}
+                                                -fno-omit-frame-pointer -g)
+  target_link_options(pileus_build INTERFACE -fsanitize=${PILEUS_SANITIZER})
+  if(PILEUS_SANITIZER STREQUAL "undefined")
+    target_compile_options(pileus_build INTERFACE -fno-sanitize-recover=all)
+  endif()
+endif()
+
+# One static library per folder of core/src; the folder name is the target's suffix. Sources are
+# globbed so that a file's folder alone decides where it belongs.
+function(pileus_add_folder folder)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "LINK")
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${folder}/*.cpp)
+  if(sources)
+    add_library(pileus_${folder} STATIC ${sources})
+    target_include_directories(pileus_${folder} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/src
+                                                       ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    target_link_libraries(pileus_${folder} PUBLIC pileus_build ${ARG_LINK})
+  else()
+    add_library(pileus_${folder} INTERFACE)
+    target_include_directories(pileus_${folder} INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src
+                                                          ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    target_link_libraries(pileus_${folder} INTERFACE pileus_build ${ARG_LINK})
+  endif()
+endfunction()

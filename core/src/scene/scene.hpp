@@ -1,0 +1,169 @@
+// A validated scene: what the YAML file said, in SI units, every default filled in.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pileus::scene {
+
+/// Where a value stands in a file; line and column count from 1, 0 when unknown (command line).
+struct Location {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// Piecewise-linear profile over height, constant beyond its ends.
+struct Profile {
+  std::vector<double> height;  // m, ascending
+  std::vector<double> value;   // SI
+};
+
+/// Uniform noise, one draw per grid cell (all parcels of a cell get the same value), inside a layer.
+struct Noise {
+  double amplitude = 0;            // SI; uniform in ±amplitude
+  double bottom = 0, top = 0;      // m
+  std::uint64_t seed = 0;
+};
+
+/// An initial field as the scene states it. Exactly one form is set (`form`).
+struct FieldDescription {
+  enum class Form { constant, formula, profile, file };
+  Form form = Form::constant;
+  double constant = 0;        // SI
+  std::string formula;        // muParser text in x, y, z (m) and the scene's constants
+  Profile profile;
+  std::string path, variable; // gridded data in HDF5/netCDF, trilinear between its nodes
+  std::optional<Noise> noise;
+  std::string units;          // expected UDUNITS of the value
+  Location where;
+};
+
+struct Domain {
+  int dimension = 3;            // 2 when `extent` has two entries (x, z)
+  std::vector<double> lower;    // m
+  std::vector<double> extent;   // m
+  std::vector<int> cells;
+};
+
+enum class RungeKutta { order3_stages3, order4_stages5 };
+
+struct TimeControl {
+  double end = 0;                    // s
+  RungeKutta scheme = RungeKutta::order4_stages5;
+  double alpha = 0.2;                // dt ≤ alpha/max(strain rate, sqrt|grad b|)
+  double courant = 1.0;              // dt ≤ courant·Δ/|u|
+  double largest = 0;                // s; cap on dt, 0: none given (the end time caps it)
+  std::optional<double> fixed;       // s; replaces every limit
+  std::uint64_t max_steps = 0;       // 0: no limit
+};
+
+/// Uniform background rotation and the reference state buoyancy is measured from.
+struct Background {
+  double coriolis[3] = {0, 0, 0};            // planetary vorticity f, s-1
+  FieldDescription reference_buoyancy;       // function of z only, m s-2; default constant 0
+};
+
+struct ParcelControl {
+  int per_cell = 8;                        // m^D on a regular sub-lattice
+  double jitter = 0;                       // fraction of the sub-lattice spacing
+  std::uint64_t seed = 0;
+  double max_aspect_ratio = 4;             // split at lambda ≥ this (2D: >)
+  double min_volume_ratio = 20;            // merge below V_cell/ratio (2D default 40)
+  double max_volume_ratio = 2.89;          // 2D only: split above V_cell/ratio
+  int correction_iterations = 2;
+  double gradient_prefactor = 1.8;
+  double max_compression = 0.5;
+};
+
+struct Boundaries {
+  enum class WallVorticity { automatic, zero, free };
+  /// Vertical vorticity at the walls: kept zero, free, or zero if and only if it starts at zero.
+  WallVorticity vertical_vorticity = WallVorticity::automatic;
+};
+
+struct Initial {
+  bool velocity_given = false;                 // else vorticity
+  std::vector<FieldDescription> vorticity;     // 3 components, or 1 in 2D; empty: zero
+  std::vector<FieldDescription> velocity;      // one per direction
+  std::vector<double> mean_wind;               // m s-1, horizontal components
+  std::map<std::string, FieldDescription> scalars;  // quantity name → field
+};
+
+/// A raw value of an operator's block, checked later against the plugin's declarations.
+struct RawValue {
+  std::string text;                 // as written
+  bool is_list = false;
+  std::vector<std::string> list;
+  Location where;                   // of the value
+  Location key_where;               // of the key
+};
+
+struct OperatorBlock {
+  std::string use;                                      // operator id or path to a library
+  std::string name;                                     // label in plan, ledger and order
+  std::vector<std::pair<std::string, RawValue>> parameters;  // everything but use and name
+  Location where;
+};
+
+struct Coupling {
+  enum class Scheme { lie, strang };
+  Scheme scheme = Scheme::lie;
+  std::vector<std::string> order;   // operator names, outermost first; empty: as listed
+};
+
+/// Initial state quantities in which the domain's potential energy is measured.
+struct EnergyControl {
+  enum class Form { none, linear, formula, sorted };
+  Form form = Form::none;
+  double squared_buoyancy_frequency = 0;   // s-2, for linear: a = (b − N²z)²/(2N²)
+  std::string formula;                     // of b and z, for formula; m2 s-2
+  Location where;
+};
+
+struct OutputStream {
+  double every = 0;                        // s; 0: off
+  std::vector<std::string> variables;      // empty: the stream's default list
+};
+
+struct OutputControl {
+  std::string directory;                   // default results/<scene>
+  OutputStream fields, parcels, profiles, series;
+  bool compress = true;
+  int mantissa_bits = 0;                   // 0: exact
+  double checkpoint_every_wall = 600;      // s of wall time
+  std::uint64_t checkpoint_every_steps = 0;  // 0: off
+  int checkpoints_kept = 2;
+};
+
+struct Expectation {
+  std::string diagnostic;        // name in summary.json:diagnostics
+  std::string statistic;         // initial final min max mean relative_change …
+  std::optional<double> at;      // s; the series value at this time instead of the end
+  std::optional<double> low, high;
+  std::string source;            // where the bound comes from
+  Location where;
+};
+
+struct Scene {
+  std::string name, title, description;
+  std::string path;                            // of the YAML file
+  std::map<std::string, double> constants;     // SI, for formulas
+  Domain domain;
+  TimeControl time;
+  Background background;
+  ParcelControl parcels;
+  Boundaries boundaries;
+  Initial initial;
+  std::vector<OperatorBlock> operators;
+  Coupling coupling;
+  EnergyControl energy;
+  OutputControl output;
+  std::vector<Expectation> expect;
+  std::uint64_t seed = 0;
+  std::string resolved_yaml;                   // the scene with all defaults, for provenance
+};
+
+}  // namespace pileus::scene
