@@ -1,0 +1,95 @@
+"""Includes point one way, and each third-party header has one home."""
+import re
+
+import tree
+
+# Folder of core/src → the folders it may include. Derived from the arrows
+# study → model → {planner, coupling, output} → {dynamics, host, scene} → parcels → mesh → base.
+LAYERS = [["base"], ["mesh"], ["parcels"], ["dynamics", "host", "scene"],
+          ["planner", "coupling", "output"], ["model"], ["study"]]
+ALLOWED = {
+    folder: {folder} | {f for lower in LAYERS[:level] for f in lower}
+    for level, layer in enumerate(LAYERS) for folder in layer
+}
+ALLOWED["cli"] = {f for layer in LAYERS for f in layer} | {"cli"}
+
+# First part of a third-party include → the folders that may name it.
+HOMES = {
+    "spdlog": {"base"},
+    "udunits2.h": {"base"},
+    "openssl": {"base"},
+    "Random123": {"base"},
+    "omp.h": {"base"},
+    "yaml-cpp": {"scene"},
+    "muParser.h": {"scene"},
+    "fftw3.h": {"mesh"},
+    "hdf5.h": {"output", "scene"},
+    "hdf5_hl.h": {"output", "scene"},
+    "dlfcn.h": {"host"},
+    "CLI": {"cli"},
+    "Eigen": {"mesh", "parcels", "dynamics"},
+    "boost": {"dynamics", "parcels", "scene", "study"},
+    "nlohmann": {"scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
+    "fmt": {"base", "scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+
+
+def includes(path):
+    """(line number, bracket, path) of every include of a file."""
+    for number, line in enumerate(tree.text_lines(path), 1):
+        if match := INCLUDE.match(line):
+            yield number, match[1], match[2]
+
+
+def is_standard(name):
+    """C++ and POSIX headers: no slash or a system folder, and not claimed by a home."""
+    return ("/" not in name or name.startswith("sys/")) and name not in HOMES
+
+
+def core_violation(folder, bracket, name):
+    """Why core/src/<folder> (or cli) may not include `name`; None when it may."""
+    first = name.split("/")[0]
+    if bracket == '"':
+        if first not in ALLOWED:
+            return f'"{name}" is not a path from core/src'
+        if first not in ALLOWED[folder]:
+            return f"{folder} may not include {first}"
+    elif first in HOMES:
+        if folder not in HOMES[first]:
+            return f"<{name}> has its home in {', '.join(sorted(HOMES[first]))}, not in {folder}"
+    elif first != "pileus" and not is_standard(name):
+        return f"<{name}> has no home; give it one in tests/meta/include_graph.py"
+    return None
+
+
+def public_violation(path, bracket, name, what):
+    """The installed headers and the plugins see the standard library, <pileus/…> and themselves."""
+    if bracket == '"':
+        return None if (path.parent / name).is_file() else f'{what} may not include "{name}"'
+    if name.startswith("pileus/") or (is_standard(name) and name != "omp.h"):
+        return None
+    return f"{what} may not include <{name}>"
+
+
+def violations(root):
+    found = []
+
+    def check(path, judge):
+        for number, bracket, name in includes(path):
+            if why := judge(bracket, name):
+                found.append(f"{path}:{number}: {why}")
+
+    for path in tree.files(root, "core/src", "core/cli", suffixes=tree.SOURCE_SUFFIXES):
+        parts = path.relative_to(root).parts
+        folder = "cli" if parts[1] == "cli" else parts[2]
+        if folder not in ALLOWED:
+            found.append(f"{path}: folder '{folder}' is not in the include table")
+            continue
+        check(path, lambda bracket, name: core_violation(folder, bracket, name))
+    for path in tree.files(root, "core/include", suffixes=tree.SOURCE_SUFFIXES):
+        check(path, lambda b, n: public_violation(path, b, n, "an installed header"))
+    for path in tree.files(root, "plugins", suffixes=tree.SOURCE_SUFFIXES):
+        if "tests" not in path.relative_to(root).parts:
+            check(path, lambda b, n: public_violation(path, b, n, "a plugin"))
+    return found
