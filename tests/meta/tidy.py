@@ -7,9 +7,12 @@ import concurrent.futures
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
+
+OBJECT = re.compile(r" -o (\S+)")
 
 
 def recorded_dependencies(build):
@@ -47,7 +50,8 @@ def main(clang_tidy, root, build):
     for command in json.loads((build / "compile_commands.json").read_text()):
         source = Path(command["file"])
         if any(folder in source.parents for folder in wanted):
-            key = key_of(command, dependencies.get(command["output"], []), root)
+            objects = OBJECT.findall(command["command"])
+            key = key_of(command, dependencies.get(objects[-1], []), root)
             if not (passed_folder / key).exists():
                 work.append((source, passed_folder / key))
 
