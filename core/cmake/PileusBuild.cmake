@@ -12,6 +12,9 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# A development build without any optimisation is too slow to run a single scene.
+set(CMAKE_CXX_FLAGS_DEBUG "-Og -g")
+
 option(PILEUS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 set(PILEUS_SANITIZER "" CACHE STRING "address, undefined, thread or empty")
 
@@ -55,4 +58,27 @@ function(pileus_add_folder folder)
                                                           ${CMAKE_CURRENT_SOURCE_DIR}/include)
     target_link_libraries(pileus_${folder} INTERFACE pileus_build ${ARG_LINK})
   endif()
+endfunction()
+
+# Vector kernels of a folder (src/<folder>/kernels/*.cpp) are compiled once per instruction set and
+# chosen at run time. Each copy lives in a namespace of its own (PILEUS_ISA), so that no inline
+# function of the wide version can be linked into the narrow one.
+function(pileus_add_kernels folder)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${folder}/kernels/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  set(flags_baseline "")
+  set(flags_avx2 -mavx2 -mfma -mbmi2 -ffp-contract=fast)
+  set(flags_avx512 -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma -mbmi2
+                   -mprefer-vector-width=512 -ffp-contract=fast)
+  foreach(isa baseline avx2 avx512)
+    set(target pileus_${folder}_${isa})
+    add_library(${target} OBJECT ${sources})
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    target_link_libraries(${target} PRIVATE pileus_build)
+    target_compile_definitions(${target} PRIVATE PILEUS_ISA=${isa})
+    target_compile_options(${target} PRIVATE -Wno-psabi -Wno-maybe-uninitialized $<$<CONFIG:Debug>:-O2> ${flags_${isa}})
+    target_sources(pileus_${folder} PRIVATE $<TARGET_OBJECTS:${target}>)
+  endforeach()
 endfunction()
