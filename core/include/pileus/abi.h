@@ -1,0 +1,292 @@
+/* pileus/abi.h - the whole binary contract between the core and its plugins, major 0.
+ *
+ * Plain C11: no allocation changes owner across this line, no exception crosses it, no C++ type
+ * appears in it. Strings are UTF-8, zero-terminated, and live as long as the table they stand in.
+ * Tables that start with `size` may grow at the end (see PILEUS_HAS); pileus_view and pileus_grid
+ * sit in hot arrays, have no `size` and are frozen. An unknown enum value is refused, not guessed.
+ * While the major is 0 the contract may still change; from 1 on tables only grow.
+ *
+ * Phases:  [setup] one thread, nothing is stepping;  [step] one thread, between blocks;
+ * [block] many threads at once on the same `self`, which is read-only then, with disjoint blocks;
+ * [any] all of them. A plugin starts no threads of its own. */
+#ifndef PILEUS_ABI_H
+#define PILEUS_ABI_H
+#include <stddef.h>
+#include <stdint.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PILEUS_ABI_MAJOR 0u /* also in the entry symbol's name: a new major is a new symbol */
+#define PILEUS_ABI_MINOR 0u /* raised when a table grows */
+#define PILEUS_ENTRY_SYMBOL "pileus_module_v0"
+#define PILEUS_EXPORT __attribute__((visibility("default")))
+/* Does table P, filled in by the other side, reach as far as MEMBER? A member that is not reached
+ * reads as zero, and zero is a valid meaning of every member. */
+#define PILEUS_HAS(P, TYPE, MEMBER) \
+  ((P)->size >= offsetof(TYPE, MEMBER) + sizeof(((const TYPE*)0)->MEMBER))
+
+/* ---- status and errors ---------------------------------------------------------------------- */
+typedef uint32_t pileus_status;
+enum {
+  PILEUS_OK = 0,
+  PILEUS_RETRY = 1,       /* rejected: the core restores the block and tries smaller steps */
+  PILEUS_E_CONFIG = 16,   /* parameters contradict each other */
+  PILEUS_E_INPUT = 17,    /* a value handed in lies outside its declared range */
+  PILEUS_E_DIVERGED = 18, /* an iteration used up its declared limit */
+  PILEUS_E_NUMERIC = 19,  /* a NaN or an infinity was produced */
+  PILEUS_E_MEMORY = 20,
+  PILEUS_E_UNSUPPORTED = 21,
+  PILEUS_E_INTERNAL = 22 /* anything else, a caught C++ exception included */
+};
+typedef struct pileus_error { /* owned by the caller, valid for one call */
+  uint32_t size;
+  int32_t slot;   /* quantity at fault, -1: none */
+  uint64_t uid;   /* parcel at fault, 0: none */
+  double value;   /* the offending value */
+  double dt_hint; /* with PILEUS_RETRY: a step that should work, s; 0: none */
+  char text[480]; /* one sentence: what, where, how to fix */
+} pileus_error;
+
+/* ---- what a plugin says about itself: constant data ----------------------------------------- */
+/* clang-format off */
+enum { /* place: where a quantity lives */
+  PILEUS_PARCEL = 1,
+  PILEUS_ITEM,              /* per-parcel lists, see pileus.items/1 */
+  PILEUS_MESH,              /* deposited by the core from the parcels' quantity of that name */
+  PILEUS_MESH_AT_PARCEL,    /* the same, interpolated back to the parcels */
+  PILEUS_SURFACE,
+  PILEUS_DOMAIN
+};
+enum { PILEUS_F64 = 1, PILEUS_F32, PILEUS_I64, PILEUS_U64 }; /* type */
+enum { /* access, a bit set */
+  PILEUS_READ = 1u,
+  PILEUS_WRITE = 2u,        /* returns a new value */
+  PILEUS_CREATE = 4u,       /* owns the quantity; one owner per run */
+  PILEUS_ADD = 8u           /* only adds to a shared accumulator */
+};
+enum { /* nature: what happens at a merge or split; 0: as the quantity's owner declares */
+  PILEUS_EXTENSIVE = 1, PILEUS_INTENSIVE, PILEUS_LABEL, PILEUS_DERIVED
+};
+enum { /* rule at a merge or split; 0: the default of the nature */
+  PILEUS_RULE_DEFAULT = 0, PILEUS_RULE_SUM, PILEUS_RULE_MEAN, PILEUS_RULE_MIN, PILEUS_RULE_MAX,
+  PILEUS_RULE_COPY, PILEUS_RULE_SHARE, PILEUS_RULE_HOOK
+};
+enum { /* scope: which parcels one call must see together; choose the narrowest */
+  PILEUS_LOCAL = 1, PILEUS_CELLWISE, PILEUS_COLUMNWISE, PILEUS_GLOBAL
+};
+enum { /* form */
+  PILEUS_FLOW = 1,          /* apply(dt) advances its own sub-problem from the current state */
+  PILEUS_PROJECTION,        /* apply maps onto a constraint; twice is the same as once */
+  PILEUS_CLOSURE,           /* diagnose only: derived quantities in every Runge-Kutta stage */
+  PILEUS_OBSERVER           /* apply writes nothing */
+};
+enum { /* repeatability: what the same bits are promised for */
+  PILEUS_REPEAT_NONE = 0,
+  PILEUS_REPEAT_RUN,        /* same binary, same number of threads */
+  PILEUS_REPEAT_THREADS,    /* any number of threads, block size, skipping, restart */
+  PILEUS_REPEAT_RANKS       /* also any decomposition into processes */
+};
+enum { /* flags, a bit set */
+  PILEUS_SERIAL = 1u,       /* blocks one after another */
+  PILEUS_STIFF = 2u,
+  PILEUS_RANDOM = 4u,
+  PILEUS_RESIZES_ITEMS = 8u
+};
+enum { /* parameter type */
+  PILEUS_NUMBER = 1, PILEUS_INTEGER, PILEUS_SWITCH, PILEUS_CHOICE, PILEUS_TEXT,
+  PILEUS_NUMBERS            /* a list of numbers of one unit; a single number is a list of one */
+};
+enum { PILEUS_PROVIDES = 1, PILEUS_REQUIRES, PILEUS_EXCLUDES };     /* role of an effect */
+enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* comparison */
+/* clang-format on */
+
+/* `when`, wherever it stands: NULL (always), or comparisons of a choice, switch or integer
+ * parameter with a literal, joined by " and ":  "thermodynamics == real",  "ice != false". */
+
+typedef struct pileus_quantity { /* its position in `quantities` is its slot number */
+  uint32_t size, place, type, components, access, nature, on_merge, on_split;
+  const char* name;   /* CF standard name, or one registered in schemas/quantities.yaml */
+  const char* units;  /* UDUNITS text of that registration; "1" for pure numbers */
+  const char* weight; /* INTENSIVE: the extensive quantity that weights its mean */
+  const char* budget; /* closed sum it belongs to ("water"), or NULL */
+  const char* when;   /* the slot exists only then */
+  double low, high;   /* admissible range, both ends included */
+  double initial;     /* given to parcels when the scene states nothing (CREATE) */
+  const char* doc;
+} pileus_quantity;
+
+typedef struct pileus_parameter {      /* its position is its index in pileus_values */
+  uint32_t size, type, knob, reserved; /* knob: 1 if it trades accuracy for time */
+  const char *name, *units, *doc;
+  double fallback;            /* the default; of NUMBERS: a list of this one number */
+  double low, high;           /* both ends included; low == high: unbounded */
+  const char* const* choices; /* CHOICE: zero-terminated; the first is the default */
+  const double* ladder;       /* knob values, coarse to fine, NaN-terminated; or NULL */
+  const char* when;           /* the parameter means something only then */
+  const char* text_fallback;  /* TEXT: the default, or NULL for an empty text */
+} pileus_parameter;
+
+typedef struct pileus_effect {
+  uint32_t size, role;
+  const char* name;
+  const char* when;
+} pileus_effect;
+
+/* One comparison of an activity condition. Conditions of equal `clause` must all hold; any clause
+ * suffices. If no clause holds for a parcel, apply would leave it bitwise unchanged and add
+ * nothing to a ledger: that is the meaning, and it is audited. */
+typedef struct pileus_condition {
+  uint32_t size, clause, op, reserved;
+  const char* quantity;
+  const char* parameter; /* compare with this parameter, or (NULL) with `value` */
+  double value;
+} pileus_condition;
+
+typedef struct pileus_reference {
+  uint32_t size, reserved;
+  const char *doi, *text;
+} pileus_reference;
+
+/* ---- what the core lends --------------------------------------------------------------------- */
+typedef struct pileus_view { /* element k, component c: (char*)data + k*stride + c*lane */
+  void* data;                /* NULL when the slot does not exist in this run */
+  int64_t stride, lane;      /* bytes */
+  int64_t count;             /* elements */
+  uint32_t type, components, space, access; /* space 0: host memory */
+} pileus_view;
+
+typedef struct pileus_grid {    /* two-dimensional runs have cells[1] == 1 */
+  int64_t cells[3];             /* x, y, z */
+  double origin[3], spacing[3]; /* m */
+  uint32_t periodic[3], dimension;
+} pileus_grid;
+
+typedef struct pileus_step {
+  uint32_t size;
+  uint32_t call;   /* below 1024; distinguishes the calls of one operator within one step */
+  uint32_t stream; /* distinguishes operators (and the two halves of a Strang step) */
+  uint32_t reserved;
+  uint64_t number; /* of the step */
+  uint64_t seed;   /* of the run */
+  double time, dt; /* s; time: start of this call's interval; dt: its length */
+} pileus_step;
+
+typedef struct pileus_block {
+  uint32_t size, reserved;
+  int64_t count;             /* parcels in the views */
+  const uint32_t* active;    /* indices to work on, ascending; NULL: all of them */
+  int64_t active_count;      /* == count when active is NULL */
+  const uint64_t* uid;       /* identity of each parcel: the key of its random numbers */
+  const pileus_view* views;  /* one per declared quantity, by slot */
+  const int64_t* item_begin; /* per parcel, into ITEM views; NULL without items */
+  const int32_t *item_count, *item_room;
+  const pileus_grid* grid; /* NULL in a zero-dimensional box */
+  double* ledger;          /* per declared budget: amount brought in from outside */
+} pileus_block;
+
+typedef struct pileus_values { /* validated against the declarations before it is given */
+  uint32_t size, count;
+  const double* number;      /* also integers (exact to 2^53), switches, choice indices */
+  const char* const* text;   /* TEXT and CHOICE, else NULL */
+  const double* const* list; /* NUMBERS, else NULL */
+  const int64_t* list_count;
+} pileus_values;
+
+typedef pileus_status (*pileus_range_fn)(void* user, int64_t begin, int64_t end,
+                                         pileus_error* error);
+
+enum { PILEUS_LOG_DEBUG = 0, PILEUS_LOG_INFO, PILEUS_LOG_WARNING, PILEUS_LOG_ERROR };
+
+typedef struct pileus_host {
+  uint32_t size, abi_minor;
+  void* impl;                                                               /* the core's own */
+  void (*log)(const struct pileus_host*, uint32_t level, const char* text); /* [any] */
+  int (*should_stop)(const struct pileus_host*); /* [any] poll in long loops */
+  /* [step][block] 64-byte aligned, undefined contents, gone after the call; NULL: no memory */
+  void* (*scratch)(const struct pileus_host*, size_t bytes);
+  /* [any] draws 0 ... n-1 of a channel (< 64) for one parcel, each in the open interval (0,1);
+   * n at most 131072. Philox4x32-10; the keys are specified in pileus/philox.hpp. */
+  void (*uniform)(const struct pileus_host*, const pileus_step*, uint64_t uid, uint32_t channel,
+                  uint32_t n, double* out);
+  /* [step] of GLOBAL operators; not nested. Chunks of `grain`, whatever the number of threads. */
+  pileus_status (*parallel_for)(const struct pileus_host*, int64_t n, int64_t grain,
+                                pileus_range_fn, void* user, pileus_error*);
+  /* [any] named timers in the run's ledger; a token of 0 is not timed */
+  uint64_t (*span_begin)(const struct pileus_host*, const char* name);
+  void (*span_end)(const struct pileus_host*, uint64_t span);
+  const void* (*extension)(const struct pileus_host*, const char* id); /* [setup] NULL: unknown */
+} pileus_host;
+
+/* ---- what a plugin implements ------------------------------------------------------------------
+ */
+typedef struct pileus_operator {
+  uint32_t size, repeatability, scope, form, flags, reserved;
+  const char* id;   /* reverse DNS: "org.example.kessler" */
+  const char* kind; /* "microphysics", "mixing", "surface", "forcing", "thermodynamics", ... */
+  const char *version, *title, *summary, *authors, *licence; /* SemVer; SPDX */
+  const pileus_reference* const* references; /* these six are zero-terminated lists; NULL: empty */
+  const pileus_quantity* const* quantities;
+  const pileus_parameter* const* parameters;
+  const pileus_effect* const* effects;
+  const pileus_condition* const* active_if; /* empty: always active */
+  const char* const* budgets;
+  pileus_status (*create)(const pileus_host*, void** self, pileus_error*);     /* [setup] */
+  pileus_status (*configure)(void* self, const pileus_values*, pileus_error*); /* [setup] */
+  /* [step] once, at the start of a run that is not a restart: sets what it CREATEs; or NULL */
+  pileus_status (*init)(void* self, const pileus_step*, const pileus_block* whole, pileus_error*);
+  /* [step] before the blocks of a step: may look at all parcels, write nothing but `self` and
+   * *dt_limit (comes in as infinity); or NULL */
+  pileus_status (*prepare)(void* self, const pileus_step*, const pileus_block* whole,
+                           double* dt_limit, pileus_error*);
+  /* [block] derived quantities from the others; pure; in every Runge-Kutta stage; or NULL */
+  pileus_status (*diagnose)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
+  /* [block] advance by step->dt; NULL: CLOSURE */
+  pileus_status (*apply)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
+  void (*destroy)(void* self);                          /* [setup] in any state; never fails */
+  const void* (*extension)(void* self, const char* id); /* [setup] or NULL */
+} pileus_operator;
+
+/* Extension "pileus.items/1": superdroplets and other per-parcel lists. */
+typedef struct pileus_items_ext {
+  uint32_t size, reserved;
+  /* [block] shares parcel `from` out between itself and `to`; `fraction` of its volume leaves */
+  pileus_status (*split)(void* self, const pileus_step*, const pileus_block*, int64_t from,
+                         int64_t to, double fraction, pileus_error*);
+  /* [block] folds `from` into `into`; the core then frees `from` */
+  pileus_status (*merge)(void* self, const pileus_step*, const pileus_block*, int64_t into,
+                         int64_t from, pileus_error*);
+} pileus_items_ext;
+
+/* Extension "pileus.state/1": private memory that the declared quantities cannot express. */
+typedef struct pileus_state_ext {
+  uint32_t size, format; /* format: the plugin's own revision of the bytes */
+  pileus_status (*save)(void* self, int (*put)(void* sink, const void*, size_t), void* sink,
+                        pileus_error*); /* [step] */
+  pileus_status (*load)(void* self, uint32_t format, const void*, size_t, pileus_error*);
+} pileus_state_ext;
+
+/* ---- entry
+ * ---------------------------------------------------------------------------------------- */
+typedef struct pileus_module {
+  uint32_t size, abi_minor_built, abi_minor_needed, reserved;
+  const pileus_operator* const* operators; /* zero-terminated */
+} pileus_module;
+/* The one exported function. [setup] No side effects; must not fail. */
+PILEUS_EXPORT const pileus_module* pileus_module_v0(void);
+
+/* Facts about the binary, in the ELF section PILEUS_NOTE_SECTION: read from the file before any of
+ * its code runs. The first record of the section counts. */
+#define PILEUS_NOTE_SECTION ".pileus.note"
+#define PILEUS_NOTE_MAGIC "PILEUSNOTE0"
+enum { PILEUS_BUILT_FASTMATH = 1u, PILEUS_BUILT_ASSERTS = 2u, PILEUS_BUILT_SANITIZED = 4u };
+typedef struct pileus_note {
+  char magic[16]; /* PILEUS_NOTE_MAGIC, zero-padded */
+  uint32_t abi_major, abi_minor_built, abi_minor_needed, build_flags;
+  char module[64], version[32], toolchain[64], reserved[64]; /* zero-terminated texts */
+} pileus_note;
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* PILEUS_ABI_H */

@@ -1,0 +1,523 @@
+// The C++20 layer over pileus/abi.h: header-only, built into each plugin with hidden visibility.
+// Nothing in this file is part of the binary contract.
+//
+// A plugin is a class derived from Operator<Self> with these members, all but describe optional:
+//
+//   void describe(Declaration&)                         declares and binds its Slot/Param members
+//   void configured()                                   parameters are set; may throw Failure
+//   void init(const pileus_step&, Block)                values at the start of a run
+//   double prepare(const pileus_step&, Block)           once a step; returns its largest step, s
+//   void diagnose(const pileus_step&, Block) const      derived quantities; pure
+//   void apply(const pileus_step&, Block) const         advance by step.dt
+//   const void* extension(const char* id)               further tables
+//
+// Hooks report failures by throwing; no exception ever leaves the library.
+#pragma once
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "abi.h"
+#include "philox.hpp"
+
+namespace pileus {
+
+/// A failure of a hook: thrown by plugin code, turned into a status and a pileus_error record.
+struct Failure : std::exception {
+  pileus_status status;
+  pileus_error record{};
+
+  explicit Failure(const char* text, pileus_status code = PILEUS_E_INTERNAL) : status(code) {
+    record.slot = -1;
+    std::snprintf(record.text, sizeof record.text, "%s", text);
+  }
+  /// Names the parcel, the quantity (by slot) and the value at fault.
+  Failure& at(std::uint64_t uid, std::uint32_t slot, double value) {
+    record.uid = uid;
+    record.slot = static_cast<std::int32_t>(slot);
+    record.value = value;
+    return *this;
+  }
+  const char* what() const noexcept override { return record.text; }
+};
+
+/// Rejects the step: the core restores the block and calls again with smaller steps.
+struct Retry : Failure {
+  explicit Retry(const char* why, double smaller_dt = 0) : Failure(why, PILEUS_RETRY) {
+    record.dt_hint = smaller_dt;
+  }
+};
+
+/// A declared quantity: its position in the operator's list.
+struct Slot {
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
+};
+/// A declared parameter.
+struct Param {
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
+};
+/// A declared budget.
+struct Budget {
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
+};
+
+/// Collects the declarations of one operator. `describe` runs once for the library's tables and
+/// once for every instance, so that its Slot and Param members learn their index. Strings must be
+/// literals: the tables keep the pointers.
+class Declaration {
+ public:
+  pileus_operator op{};  // id, kind, version, title, summary, authors, licence, scope, form, …
+
+  class Quantity {
+   public:
+    Quantity(pileus_quantity& row, std::uint32_t index) : row_(row), index_(index) {}
+    /// Admissible values, both ends included; the core checks them after every call.
+    Quantity& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
+    /// Conserved per unit volume: volume-weighted mean at a merge, copied at a split.
+    Quantity& intensive(const char* budget = nullptr) {
+      row_.nature = PILEUS_INTENSIVE, row_.weight = "volume", row_.budget = budget;
+      return *this;
+    }
+    /// An amount: summed at a merge, shared by volume at a split.
+    Quantity& extensive(const char* budget = nullptr) {
+      return row_.nature = PILEUS_EXTENSIVE, row_.budget = budget, *this;
+    }
+    Quantity& initial(double value) { return row_.initial = value, *this; }
+    Quantity& components(std::uint32_t count) { return row_.components = count, *this; }
+    Quantity& place(std::uint32_t where) { return row_.place = where, *this; }
+    Quantity& type(std::uint32_t element) { return row_.type = element, *this; }
+    Quantity& when(const char* condition) { return row_.when = condition, *this; }
+    Quantity& doc(const char* text) { return row_.doc = text, *this; }
+    operator Slot() const { return {index_}; }  // NOLINT: `slot = d.reads(…)` is the point
+
+   private:
+    pileus_quantity& row_;
+    std::uint32_t index_;
+  };
+
+  class Parameter {
+   public:
+    Parameter(pileus_parameter& row, std::uint32_t index) : row_(row), index_(index) {}
+    /// Admissible values, both ends included.
+    Parameter& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
+    /// Trades accuracy for time; `ladder` from coarse to fine, NaN-terminated, static.
+    Parameter& knob(const double* ladder) { return row_.knob = 1, row_.ladder = ladder, *this; }
+    Parameter& when(const char* condition) { return row_.when = condition, *this; }
+    Parameter& doc(const char* text) { return row_.doc = text, *this; }
+    operator Param() const { return {index_}; }  // NOLINT: `param = d.number(…)` is the point
+
+   private:
+    pileus_parameter& row_;
+    std::uint32_t index_;
+  };
+
+  /// A quantity of the parcels that the operator only reads.
+  Quantity reads(const char* name, const char* units) { return touches(name, units, PILEUS_READ); }
+  /// One it reads and gives new values.
+  Quantity updates(const char* name, const char* units) {
+    return touches(name, units, PILEUS_READ | PILEUS_WRITE);
+  }
+  /// One it owns and advances; state its nature with intensive() or extensive().
+  Quantity owns(const char* name, const char* units) {
+    return touches(name, units, PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE);
+  }
+  /// One that `diagnose` computes from the others.
+  Quantity derives(const char* name, const char* units) {
+    return touches(name, units, PILEUS_WRITE | PILEUS_CREATE, PILEUS_DERIVED);
+  }
+
+  Parameter number(const char* name, const char* units, double fallback) {
+    return parameter(PILEUS_NUMBER, name, units, fallback);
+  }
+  Parameter integer(const char* name, std::int64_t fallback) {
+    return parameter(PILEUS_INTEGER, name, "1", static_cast<double>(fallback));
+  }
+  Parameter toggle(const char* name, bool fallback) {
+    return parameter(PILEUS_SWITCH, name, "1", fallback ? 1.0 : 0.0);
+  }
+  /// One of a few words; the first is the default.
+  Parameter choice(const char* name, std::initializer_list<const char*> words) {
+    std::vector<const char*>& list = choices_.emplace_back(words);
+    list.push_back(nullptr);
+    Parameter made = parameter(PILEUS_CHOICE, name, "1", 0);
+    parameters_.items.back().choices = list.data();
+    return made;
+  }
+  Parameter text(const char* name, const char* fallback) {
+    Parameter made = parameter(PILEUS_TEXT, name, "1", 0);
+    parameters_.items.back().text_fallback = fallback;
+    return made;
+  }
+  /// A list of numbers of one unit; the default is a list of one.
+  Parameter numbers(const char* name, const char* units, double fallback) {
+    return parameter(PILEUS_NUMBERS, name, units, fallback);
+  }
+
+  void provides(const char* effect, const char* when = nullptr) {
+    add_effect(PILEUS_PROVIDES, effect, when);
+  }
+  void requires_effect(const char* effect, const char* when = nullptr) {
+    add_effect(PILEUS_REQUIRES, effect, when);
+  }
+  void excludes(const char* effect, const char* when = nullptr) {
+    add_effect(PILEUS_EXCLUDES, effect, when);
+  }
+  /// A parcel is active if for some `clause` all its comparisons hold.
+  void active_if(std::uint32_t clause, const char* quantity, std::uint32_t comparison,
+                 double value) {
+    pileus_condition& row = conditions_.add();
+    row.clause = clause, row.quantity = quantity, row.op = comparison, row.value = value;
+  }
+  void cites(const char* doi, const char* text) {
+    pileus_reference& row = references_.add();
+    row.doi = doi, row.text = text;
+  }
+  Budget budget(const char* name) {
+    budgets_.back() = name;
+    budgets_.push_back(nullptr);
+    return {static_cast<std::uint32_t>(budgets_.size() - 2)};
+  }
+
+  /// Points the operator's lists at what was collected.
+  void seal() {
+    op.size = sizeof op;
+    op.quantities = quantities_.view.data();
+    op.parameters = parameters_.view.data();
+    op.effects = effects_.view.data();
+    op.active_if = conditions_.view.data();
+    op.references = references_.view.data();
+    op.budgets = budgets_.data();
+  }
+
+ private:
+  template <class T>
+  struct List {  // rows that stay where they are, and the zero-terminated view of them
+    std::deque<T> items;
+    std::vector<const T*> view{nullptr};
+    T& add() {
+      T& row = items.emplace_back();
+      row = T{};
+      row.size = sizeof(T);
+      view.back() = &row;
+      view.push_back(nullptr);
+      return row;
+    }
+  };
+
+  Quantity touches(const char* name, const char* units, std::uint32_t access,
+                   std::uint32_t nature = 0) {
+    const auto index = static_cast<std::uint32_t>(quantities_.items.size());
+    pileus_quantity& row = quantities_.add();
+    row.place = PILEUS_PARCEL;
+    row.type = PILEUS_F64;
+    row.components = 1;
+    row.access = access;
+    row.nature = nature;
+    row.name = name;
+    row.units = units;
+    row.low = -std::numeric_limits<double>::max();
+    row.high = std::numeric_limits<double>::max();
+    return {row, index};
+  }
+  Parameter parameter(std::uint32_t type, const char* name, const char* units, double fallback) {
+    const auto index = static_cast<std::uint32_t>(parameters_.items.size());
+    pileus_parameter& row = parameters_.add();
+    row.type = type;
+    row.name = name;
+    row.units = units;
+    row.fallback = fallback;
+    return {row, index};
+  }
+  void add_effect(std::uint32_t role, const char* name, const char* when) {
+    pileus_effect& row = effects_.add();
+    row.role = role, row.name = name, row.when = when;
+  }
+
+  List<pileus_quantity> quantities_;
+  List<pileus_parameter> parameters_;
+  List<pileus_effect> effects_;
+  List<pileus_condition> conditions_;
+  List<pileus_reference> references_;
+  std::deque<std::vector<const char*>> choices_;
+  std::vector<const char*> budgets_{nullptr};
+};
+
+/// Access to a quantity of any stride and number of components.
+template <class T>
+class Strided {
+ public:
+  explicit Strided(const pileus_view& view) : view_(view) {}
+  T& operator()(std::int64_t element, std::int64_t component = 0) const {
+    char* base = static_cast<char*>(view_.data);
+    return *reinterpret_cast<T*>(base + element * view_.stride + component * view_.lane);
+  }
+
+ private:
+  const pileus_view& view_;
+};
+
+/// The parcels of one call.
+class Block {
+ public:
+  Block(const pileus_block& raw, const pileus_host& host) : raw_(raw), host_(host) {}
+
+  std::int64_t count() const { return raw_.count; }
+  std::uint64_t uid(std::int64_t parcel) const { return raw_.uid[parcel]; }
+  const pileus_block& raw() const { return raw_; }
+
+  /// True if the quantity exists in this run (its `when` holds).
+  bool has(Slot slot) const { return raw_.views[slot.index].data != nullptr; }
+  /// Values of a quantity declared with reads, updates or owns; element k belongs to parcel k.
+  const double* in(Slot slot) const { return dense<const double>(slot, PILEUS_READ); }
+  /// Values of a quantity declared with updates, owns or derives.
+  double* out(Slot slot) const { return dense<double>(slot, PILEUS_WRITE); }
+  /// The same for quantities with components or another element type.
+  template <class T>
+  Strided<const T> strided_in(Slot slot) const {
+    return Strided<const T>(checked(slot, PILEUS_READ));
+  }
+  template <class T>
+  Strided<T> strided_out(Slot slot) const {
+    return Strided<T>(checked(slot, PILEUS_WRITE));
+  }
+
+  /// Calls f(parcel) for every active parcel, ascending.
+  template <class F>
+  void each(F&& f) const {
+    if (raw_.active == nullptr) {
+      for (std::int64_t i = 0; i < raw_.count; ++i) f(i);
+    } else {
+      for (std::int64_t k = 0; k < raw_.active_count; ++k) {
+        f(static_cast<std::int64_t>(raw_.active[k]));
+      }
+    }
+  }
+
+  /// Books an amount brought in from outside (positive) or lost to it.
+  void book(Budget budget, double amount) const { raw_.ledger[budget.index] += amount; }
+
+  /// Room for `count` values until the call returns; contents undefined.
+  std::span<double> scratch(std::size_t count) const {
+    void* room = host_.scratch(&host_, count * sizeof(double));
+    if (room == nullptr && count > 0) throw std::bad_alloc();
+    return {static_cast<double*>(room), count};
+  }
+
+ private:
+  const pileus_view& checked(Slot slot, std::uint32_t access) const {
+    const pileus_view& view = raw_.views[slot.index];
+    if (view.data == nullptr) throw Failure("a quantity was used that does not exist in this run");
+    if ((view.access & access) == 0) throw Failure("a quantity was used against its declaration");
+    return view;
+  }
+  template <class T>
+  T* dense(Slot slot, std::uint32_t access) const {
+    const pileus_view& view = checked(slot, access);
+    if (view.type != PILEUS_F64 || view.stride != sizeof(double)) {
+      throw Failure("a quantity that is not a dense array of doubles was used as one");
+    }
+    return static_cast<T*>(view.data);
+  }
+
+  const pileus_block& raw_;
+  const pileus_host& host_;
+};
+
+/// Base of every operator written in C++; see the head of this file.
+template <class Self>
+class Operator {
+ public:
+  /// The operator's table; NULL if describe threw, which the core refuses by name.
+  static const pileus_operator* table() noexcept {
+    try {
+      static Declaration declared = make_declaration();
+      return &declared.op;
+    } catch (...) {
+      return nullptr;
+    }
+  }
+
+ protected:
+  const pileus_host& host() const { return *host_; }
+  double value(Param p) const { return number_[p.index]; }
+  bool is_on(Param p) const { return number_[p.index] != 0; }
+  std::int64_t integer(Param p) const { return static_cast<std::int64_t>(number_[p.index]); }
+  /// Position of the chosen word in its list.
+  int choice(Param p) const { return static_cast<int>(number_[p.index]); }
+  const std::string& text(Param p) const { return text_[p.index]; }
+  std::span<const double> list(Param p) const { return list_[p.index]; }
+
+  /// Draws 0 … n−1 of `channel` (< 64) for one parcel at this step, each in (0,1).
+  static void draw(const pileus_step& step, std::uint64_t uid, std::uint32_t channel,
+                   std::uint32_t n, double* out) {
+    draw_uniform({step.seed, step.stream, uid, step.number, step.call, channel}, n, out);
+  }
+
+ private:
+  template <class F>
+  static pileus_status guarded(pileus_error* error, F&& body) noexcept {
+    try {
+      body();
+      return PILEUS_OK;
+    } catch (const Failure& failure) {
+      if (error != nullptr) {
+        const std::uint32_t size = error->size;
+        *error = failure.record;
+        error->size = size;
+      }
+      return failure.status;
+    } catch (const std::bad_alloc&) {
+      return say(error, "out of memory", PILEUS_E_MEMORY);
+    } catch (const std::exception& other) {
+      return say(error, other.what(), PILEUS_E_INTERNAL);
+    } catch (...) {
+      return say(error, "an exception that is no std::exception", PILEUS_E_INTERNAL);
+    }
+  }
+  static pileus_status say(pileus_error* error, const char* text, pileus_status status) noexcept {
+    if (error != nullptr) std::snprintf(error->text, sizeof error->text, "%s", text);
+    return status;
+  }
+
+  void keep(const pileus_values& values) {
+    number_.assign(values.number, values.number + values.count);
+    text_.assign(values.count, {});
+    list_.assign(values.count, {});
+    for (std::uint32_t i = 0; i < values.count; ++i) {
+      if (values.text != nullptr && values.text[i] != nullptr) text_[i] = values.text[i];
+      if (values.list != nullptr && values.list[i] != nullptr) {
+        list_[i].assign(values.list[i], values.list[i] + values.list_count[i]);
+      }
+    }
+  }
+
+  static Declaration make_declaration() {
+    Declaration d;
+    d.op.scope = PILEUS_LOCAL;
+    d.op.repeatability = PILEUS_REPEAT_RANKS;
+    Self{}.describe(d);
+    d.op.create = [](const pileus_host* host, void** self, pileus_error* error) {
+      return guarded(error, [&] {
+        auto made = std::make_unique<Self>();
+        Declaration bound;
+        made->describe(bound);
+        static_cast<Operator*>(made.get())->host_ = host;
+        *self = made.release();
+      });
+    };
+    d.op.configure = [](void* self, const pileus_values* values, pileus_error* error) {
+      return guarded(error, [&] {
+        auto* me = static_cast<Self*>(self);
+        static_cast<Operator*>(me)->keep(*values);
+        if constexpr (requires { me->configured(); }) me->configured();
+      });
+    };
+    d.op.destroy = [](void* self) { delete static_cast<Self*>(self); };
+    add_step_hooks(d.op);
+    add_block_hooks(d.op);
+    d.seal();
+    return d;
+  }
+
+  static void add_step_hooks(pileus_operator& op) {
+    if constexpr (requires(Self & s, const pileus_step& t, Block b) { s.init(t, b); }) {
+      op.init = [](void* self, const pileus_step* step, const pileus_block* whole,
+                   pileus_error* error) {
+        return guarded(error, [&] {
+          auto* me = static_cast<Self*>(self);
+          me->init(*step, Block(*whole, *static_cast<Operator*>(me)->host_));
+        });
+      };
+    }
+    if constexpr (requires(Self & s, const pileus_step& t, Block b) { s.prepare(t, b); }) {
+      op.prepare = [](void* self, const pileus_step* step, const pileus_block* whole, double* limit,
+                      pileus_error* error) {
+        return guarded(error, [&] {
+          auto* me = static_cast<Self*>(self);
+          *limit = me->prepare(*step, Block(*whole, *static_cast<Operator*>(me)->host_));
+        });
+      };
+    }
+    if constexpr (requires(Self & s, const char* id) { s.extension(id); }) {
+      op.extension = [](void* self, const char* id) -> const void* {
+        return static_cast<Self*>(self)->extension(id);
+      };
+    }
+  }
+
+  static void add_block_hooks(pileus_operator& op) {
+    if constexpr (requires(const Self& s, const pileus_step& t, Block b) { s.diagnose(t, b); }) {
+      op.diagnose = [](void* self, const pileus_step* step, const pileus_block* block,
+                       pileus_error* error) {
+        return guarded(error, [&] {
+          const auto* me = static_cast<const Self*>(self);
+          me->diagnose(*step, Block(*block, *static_cast<const Operator*>(me)->host_));
+        });
+      };
+    }
+    if constexpr (requires(const Self& s, const pileus_step& t, Block b) { s.apply(t, b); }) {
+      op.apply = [](void* self, const pileus_step* step, const pileus_block* block,
+                    pileus_error* error) {
+        return guarded(error, [&] {
+          const auto* me = static_cast<const Self*>(self);
+          me->apply(*step, Block(*block, *static_cast<const Operator*>(me)->host_));
+        });
+      };
+    }
+  }
+
+  const pileus_host* host_ = nullptr;
+  std::vector<double> number_;
+  std::vector<std::string> text_;
+  std::vector<std::vector<double>> list_;
+};
+
+}  // namespace pileus
+
+#if defined(__FAST_MATH__)
+#define PILEUS_NOTE_FASTMATH_ PILEUS_BUILT_FASTMATH
+#else
+#define PILEUS_NOTE_FASTMATH_ 0u
+#endif
+#if defined(NDEBUG)
+#define PILEUS_NOTE_ASSERTS_ 0u
+#else
+#define PILEUS_NOTE_ASSERTS_ PILEUS_BUILT_ASSERTS
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PILEUS_NOTE_SANITIZED_ PILEUS_BUILT_SANITIZED
+#else
+#define PILEUS_NOTE_SANITIZED_ 0u
+#endif
+
+/// Defines the entry function and the note of a library with the given operators:
+/// PILEUS_MODULE("rain", "1.0.0", Kessler::table(), Evaporation::table())
+#define PILEUS_MODULE(MODULE, VERSION, ...)                                                   \
+  extern "C" PILEUS_EXPORT const pileus_module* pileus_module_v0(void) {                      \
+    static const pileus_operator* const list[] = {__VA_ARGS__, nullptr};                      \
+    static const pileus_module module{sizeof(pileus_module), PILEUS_ABI_MINOR, 0u, 0u, list}; \
+    return &module;                                                                           \
+  }                                                                                           \
+  [[gnu::section(".pileus.note"), gnu::used]] static const pileus_note pileus_note_record = { \
+      PILEUS_NOTE_MAGIC,                                                                      \
+      PILEUS_ABI_MAJOR,                                                                       \
+      PILEUS_ABI_MINOR,                                                                       \
+      0u,                                                                                     \
+      PILEUS_NOTE_FASTMATH_ | PILEUS_NOTE_ASSERTS_ | PILEUS_NOTE_SANITIZED_,                  \
+      MODULE,                                                                                 \
+      VERSION,                                                                                \
+      __VERSION__,                                                                            \
+      ""};                                                                                    \
+  static_assert(sizeof(MODULE) <= 64 && sizeof(VERSION) <= 32)
+
+/// The usual case: one operator class, the library named by its id.
+#define PILEUS_PLUGIN(TYPE, ID, VERSION) PILEUS_MODULE(ID, VERSION, TYPE::table())

@@ -1,0 +1,31 @@
+// Relaxes each parcel's tracer towards one value: the smallest complete plugin.
+#include <pileus/numerics.hpp>
+#include <pileus/plugin.hpp>
+
+class Relaxation : public pileus::Operator<Relaxation> {
+  pileus::Slot tracer;
+  pileus::Param time_scale, target;
+
+ public:
+  void describe(pileus::Declaration& d) {
+    d.op.id = "org.pileus.example_relaxation";
+    d.op.kind = "forcing";
+    d.op.version = "1.0.0";
+    d.op.title = "Relaxation towards a value";
+    d.op.summary = "Relaxes a tracer towards a fixed value, exactly for any time step.";
+    d.op.authors = "Pileus contributors";
+    d.op.licence = "Apache-2.0";
+    d.op.form = PILEUS_FLOW;
+    d.provides("tracer_relaxation");
+    tracer = d.owns("tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
+    time_scale = d.number("time_scale", "s", 3600).range(1e-3, 1e9).doc("e-folding time");
+    target = d.number("target", "1", 0).range(-1e6, 1e6).doc("value relaxed to");
+  }
+
+  void apply(const pileus_step& step, pileus::Block block) const {
+    const double ratio = step.dt / value(time_scale), goal = value(target);
+    double* q = block.out(tracer);
+    block.each([&](auto p) { q[p] = pileus::numerics::relaxed(q[p], goal, ratio); });
+  }
+};
+PILEUS_PLUGIN(Relaxation, "org.pileus.example_relaxation", "1.0.0");
