@@ -29,7 +29,7 @@ endif()
 add_library(pileus_build INTERFACE)
 target_compile_options(
   pileus_build INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                         -ffp-contract=off -fno-math-errno)
+                         -Wno-psabi -ffp-contract=off -fno-math-errno)
 if(PILEUS_WARNINGS_AS_ERRORS)
   target_compile_options(pileus_build INTERFACE -Werror)
 endif()

@@ -67,7 +67,8 @@ T ordered_reduce(std::size_t count, T initial, Partial&& partial, Combine&& comb
   const std::size_t tasks = (count + chunk - 1) / chunk;
   std::vector<T> partials(tasks, initial);
   parallel_chunks(
-      count, [&](std::size_t begin, std::size_t end) { partials[begin / chunk] = partial(begin, end); },
+      count,
+      [&](std::size_t begin, std::size_t end) { partials[begin / chunk] = partial(begin, end); },
       chunk);
   T total = initial;
   for (const T& value : partials) total = combine(total, value);

@@ -25,7 +25,7 @@ enum class Phase : int {
 };
 
 inline constexpr std::array<std::string_view, static_cast<int>(Phase::count_)> phase_names = {
-    "deposit", "inversion", "tendency", "interpolate", "stage_update", "closure",    "operators",
+    "deposit", "inversion", "tendency", "interpolate", "stage_update", "closure", "operators",
     "sort",    "merge",     "split",    "correction",  "diagnostics",  "output"};
 
 /// Seconds and number of entries of every phase.

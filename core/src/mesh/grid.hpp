@@ -15,10 +15,10 @@ struct Grid {
   static_assert(D == 2 || D == 3);
   static constexpr int vertical = D - 1;
 
-  std::array<int, D> cells{};          // number of cells: x[, y], z
-  std::array<double, D> lower{};       // m, corner of the domain
-  std::array<double, D> extent{};      // m
-  std::array<double, D> spacing{};     // m
+  std::array<int, D> cells{};       // number of cells: x[, y], z
+  std::array<double, D> lower{};    // m, corner of the domain
+  std::array<double, D> extent{};   // m
+  std::array<double, D> spacing{};  // m
   std::array<double, D> inverse_spacing{};
 
   Grid() = default;
@@ -40,7 +40,9 @@ struct Grid {
   std::size_t nodes() const { return columns() * std::size_t(levels()); }
   std::size_t cell_count() const { return columns() * std::size_t(nz()); }
 
-  std::size_t column(int i, int j) const { return std::size_t(j) * std::size_t(nx()) + std::size_t(i); }
+  std::size_t column(int i, int j) const {
+    return std::size_t(j) * std::size_t(nx()) + std::size_t(i);
+  }
   std::size_t node(std::size_t column, int k) const {
     return column * std::size_t(levels()) + std::size_t(k + 1);
   }

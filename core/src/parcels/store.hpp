@@ -23,10 +23,10 @@ enum class Nature {
 
 /// A scalar quantity carried by every parcel.
 struct Scalar {
-  std::string name;    // as registered in schemas/quantities.yaml
-  std::string units;   // UDUNITS
+  std::string name;   // as registered in schemas/quantities.yaml
+  std::string units;  // UDUNITS
   Nature nature = Nature::intensive;
-  std::string budget;  // closed sum it belongs to, or empty
+  std::string budget;                     // closed sum it belongs to, or empty
   double low = 0, high = 0, initial = 0;  // admissible range; value of new parcels
 };
 
@@ -46,10 +46,10 @@ class Store {
   /// Sets the number of parcels; new ones are uninitialised.
   void resize(std::size_t size);
 
-  double* position(int axis) { return column(axis); }          // m
-  double* volume() { return column(dimension_); }              // m3 (2D: m2)
+  double* position(int axis) { return column(axis); }                              // m
+  double* volume() { return column(dimension_); }                                  // m3 (2D: m2)
   double* vorticity(int component) { return column(dimension_ + 1 + component); }  // s-1
-  double* shape(int component) {                                // m2
+  double* shape(int component) {                                                   // m2
     return column(dimension_ + 1 + vorticity_components() + component);
   }
   double* scalar(int index) { return column(first_scalar() + index); }

@@ -21,10 +21,11 @@ struct Profile {
   std::vector<double> value;   // SI
 };
 
-/// Uniform noise, one draw per grid cell (all parcels of a cell get the same value), inside a layer.
+/// Uniform noise, one draw per grid cell (all parcels of a cell get the same value), inside a
+/// layer.
 struct Noise {
-  double amplitude = 0;            // SI; uniform in ±amplitude
-  double bottom = 0, top = 0;      // m
+  double amplitude = 0;        // SI; uniform in ±amplitude
+  double bottom = 0, top = 0;  // m
   std::uint64_t seed = 0;
 };
 
@@ -32,47 +33,60 @@ struct Noise {
 struct FieldDescription {
   enum class Form { constant, formula, profile, file };
   Form form = Form::constant;
-  double constant = 0;        // SI
-  std::string formula;        // muParser text in x, y, z (m) and the scene's constants
+  double constant = 0;  // SI
+  std::string formula;  // muParser text in x, y, z (m) and the scene's constants
   Profile profile;
-  std::string path, variable; // gridded data in HDF5/netCDF, trilinear between its nodes
+  std::string path, variable;  // gridded data in HDF5/netCDF, trilinear between its nodes
   std::optional<Noise> noise;
-  std::string units;          // expected UDUNITS of the value
+  std::string units;  // expected UDUNITS of the value
+  Location where;
+};
+
+/// A formula with a name that other formulas may use: a function of x, y, z, evaluated where they
+/// are.
+struct NamedFormula {
+  std::string name;
+  std::string text;
   Location where;
 };
 
 struct Domain {
-  int dimension = 3;            // 2 when `extent` has two entries (x, z)
-  std::vector<double> lower;    // m
-  std::vector<double> extent;   // m
+  int dimension = 3;           // 2 when `extent` has two entries (x, z)
+  std::vector<double> lower;   // m
+  std::vector<double> extent;  // m
   std::vector<int> cells;
 };
 
 enum class RungeKutta { order3_stages3, order4_stages5 };
 
 struct TimeControl {
-  double end = 0;                    // s
+  double end = 0;  // s
   RungeKutta scheme = RungeKutta::order4_stages5;
-  double alpha = 0.2;                // dt ≤ alpha/max(strain rate, sqrt|grad b|)
-  double courant = 1.0;              // dt ≤ courant·Δ/|u|
-  double largest = 0;                // s; cap on dt, 0: none given (the end time caps it)
-  std::optional<double> fixed;       // s; replaces every limit
-  std::uint64_t max_steps = 0;       // 0: no limit
+  double alpha = 0.2;           // dt ≤ alpha/max(strain rate, sqrt|grad b|)
+  double courant = 1.0;         // dt ≤ courant·Δ/|u|
+  double largest = 0;           // s; cap on dt, 0: none given (the end time caps it)
+  std::optional<double> fixed;  // s; replaces every limit
+  std::uint64_t max_steps = 0;  // 0: no limit
 };
 
 /// Uniform background rotation and the reference state buoyancy is measured from.
 struct Background {
-  double coriolis[3] = {0, 0, 0};            // planetary vorticity f, s-1
+  std::vector<double> coriolis = {0, 0, 0};  // planetary vorticity f in x, y, z, s-1
   FieldDescription reference_buoyancy;       // function of z only, m s-2; default constant 0
+  // Ways to state the above; empty once the scene is read.
+  std::optional<double> latitude;    // rad
+  double rotation_rate = 7.2921e-5;  // s-1, of the planet, with `latitude`
+  bool horizontal_coriolis = false;  // with `latitude`: keep f_y = 2 Ω cos(latitude) too
+  std::optional<double> squared_buoyancy_frequency;  // s-2; reference N² z
 };
 
 struct ParcelControl {
-  int per_cell = 8;                        // m^D on a regular sub-lattice
-  double jitter = 0;                       // fraction of the sub-lattice spacing
+  int per_cell = 8;   // m^D on a regular sub-lattice
+  double jitter = 0;  // fraction of the sub-lattice spacing
   std::uint64_t seed = 0;
-  double max_aspect_ratio = 4;             // split at lambda ≥ this (2D: >)
-  double min_volume_ratio = 20;            // merge below V_cell/ratio (2D default 40)
-  double max_volume_ratio = 2.89;          // 2D only: split above V_cell/ratio
+  double max_aspect_ratio = 4;     // split at lambda ≥ this (2D: >)
+  double min_volume_ratio = 20;    // merge below V_cell/ratio (2D default 40)
+  double max_volume_ratio = 2.89;  // 2D only: split above V_cell/ratio
   int correction_iterations = 2;
   double gradient_prefactor = 1.8;
   double max_compression = 0.5;
@@ -85,25 +99,25 @@ struct Boundaries {
 };
 
 struct Initial {
-  bool velocity_given = false;                 // else vorticity
-  std::vector<FieldDescription> vorticity;     // 3 components, or 1 in 2D; empty: zero
-  std::vector<FieldDescription> velocity;      // one per direction
-  std::vector<double> mean_wind;               // m s-1, horizontal components
+  bool velocity_given = false;                      // else vorticity
+  std::vector<FieldDescription> vorticity;          // 3 components, or 1 in 2D; empty: zero
+  std::vector<FieldDescription> velocity;           // one per direction
+  std::vector<double> mean_wind;                    // m s-1, horizontal components
   std::map<std::string, FieldDescription> scalars;  // quantity name → field
 };
 
 /// A raw value of an operator's block, checked later against the plugin's declarations.
 struct RawValue {
-  std::string text;                 // as written
+  std::string text;  // as written
   bool is_list = false;
   std::vector<std::string> list;
-  Location where;                   // of the value
-  Location key_where;               // of the key
+  Location where;      // of the value
+  Location key_where;  // of the key
 };
 
 struct OperatorBlock {
-  std::string use;                                      // operator id or path to a library
-  std::string name;                                     // label in plan, ledger and order
+  std::string use;                                           // operator id or path to a library
+  std::string name;                                          // label in plan, ledger and order
   std::vector<std::pair<std::string, RawValue>> parameters;  // everything but use and name
   Location where;
 };
@@ -111,46 +125,62 @@ struct OperatorBlock {
 struct Coupling {
   enum class Scheme { lie, strang };
   Scheme scheme = Scheme::lie;
-  std::vector<std::string> order;   // operator names, outermost first; empty: as listed
+  std::vector<std::string> order;  // operator names, outermost first; empty: as listed
 };
 
 /// Initial state quantities in which the domain's potential energy is measured.
 struct EnergyControl {
   enum class Form { none, linear, formula, sorted };
   Form form = Form::none;
-  double squared_buoyancy_frequency = 0;   // s-2, for linear: a = (b − N²z)²/(2N²)
-  std::string formula;                     // of b and z, for formula; m2 s-2
+  double squared_buoyancy_frequency = 0;  // s-2, for linear: a = (b − N²z)²/(2N²)
+  std::string formula;                    // of b and z, for formula; m2 s-2
   Location where;
 };
 
+/// What the scene says about its effects; the planner turns it into verdicts.
+struct EffectRequests {
+  /// automatic: all left to the planner; list: exactly these are on, the rest is off; map: these as
+  /// stated, the rest left to the planner.
+  enum class Form { automatic, list, map };
+  enum class Mode { off, on, watch };
+  struct Request {
+    std::string name;
+    Mode mode = Mode::on;
+    Location where;
+  };
+  Form form = Form::automatic;
+  std::vector<Request> requests;
+};
+
 struct OutputStream {
-  double every = 0;                        // s; 0: off
-  std::vector<std::string> variables;      // empty: the stream's default list
+  double every = -1;                   // s; 0: off (−1 only while reading: take the default)
+  std::vector<std::string> variables;  // empty: the stream's default list
 };
 
 struct OutputControl {
-  std::string directory;                   // default results/<scene>
+  std::string directory;  // default results/<scene>
   OutputStream fields, parcels, profiles, series;
   bool compress = true;
-  int mantissa_bits = 0;                   // 0: exact
-  double checkpoint_every_wall = 600;      // s of wall time
+  int mantissa_bits = 0;                     // 0: exact
+  double checkpoint_every_wall = 600;        // s of wall time
   std::uint64_t checkpoint_every_steps = 0;  // 0: off
   int checkpoints_kept = 2;
 };
 
 struct Expectation {
-  std::string diagnostic;        // name in summary.json:diagnostics
-  std::string statistic;         // initial final min max mean relative_change …
-  std::optional<double> at;      // s; the series value at this time instead of the end
+  std::string diagnostic;    // name in summary.json:diagnostics
+  std::string statistic;     // initial final min max mean relative_change …
+  std::optional<double> at;  // s; the series value at this time instead of the end
   std::optional<double> low, high;
-  std::string source;            // where the bound comes from
+  std::string source;  // where the bound comes from
   Location where;
 };
 
 struct Scene {
   std::string name, title, description;
-  std::string path;                            // of the YAML file
-  std::map<std::string, double> constants;     // SI, for formulas
+  std::string path;                         // of the YAML file
+  std::map<std::string, double> constants;  // SI, for formulas
+  std::vector<NamedFormula> formulas;       // in order; each may use those before it
   Domain domain;
   TimeControl time;
   Background background;
@@ -159,11 +189,12 @@ struct Scene {
   Initial initial;
   std::vector<OperatorBlock> operators;
   Coupling coupling;
+  EffectRequests effects;
   EnergyControl energy;
   OutputControl output;
   std::vector<Expectation> expect;
   std::uint64_t seed = 0;
-  std::string resolved_yaml;                   // the scene with all defaults, for provenance
+  std::string resolved_yaml;  // the scene with all defaults, for provenance
 };
 
 }  // namespace pileus::scene

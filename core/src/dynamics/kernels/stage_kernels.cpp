@@ -1,0 +1,245 @@
+// One Runge–Kutta stage for eight parcels at a time: interpolate, turn, deform, move.
+// Compiled once per instruction set (see pileus_add_kernels).
+#include "dynamics/kernels.hpp"
+#include "dynamics/shape_update.hpp"
+#include "parcels/stencil.hpp"
+
+namespace pileus::PILEUS_ISA {
+namespace {
+
+using dynamics::ShapeIntegrator;
+using dynamics::StageJob;
+using mesh::FlowRecord;
+
+/// Flow at eight parcels: value f of the flow record in pack f. Lanes from `count` on are zero.
+void interpolate(const double* flow, const Stencil<3>& stencil, std::size_t count, Pack (&low)[8],
+                 Pack (&high)[8]) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if (lane >= count) {
+      low[lane] = high[lane] = Pack{};
+      continue;
+    }
+    // Two chains per half of the record: the sums are latency-bound otherwise.
+    Pack low_a{}, low_b{}, high_a{}, high_b{};
+    for (int s = 0; s < support_points<3>; ++s)
+      for (int c = 0; c < corner_columns<3>; ++c) {
+        const Pack* node =
+            reinterpret_cast<const Pack*>(flow) + 2 * std::size_t(stencil.node[s][c][lane]);
+        const double below = stencil.weight[s][2 * c][lane];
+        const double above = stencil.weight[s][2 * c + 1][lane];
+        low_a += below * node[0];
+        high_a += below * node[1];
+        low_b += above * node[2];
+        high_b += above * node[3];
+      }
+    low[lane] = low_a + low_b;
+    high[lane] = high_a + high_b;
+  }
+  transpose(low);
+  transpose(high);
+}
+
+void interpolate(const double* flow, const Stencil<2>& stencil, std::size_t count,
+                 Pack (&value)[8]) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if (lane >= count) {
+      value[lane] = Pack{};
+      continue;
+    }
+    Pack a{}, b{};
+    for (int s = 0; s < support_points<2>; ++s)
+      for (int c = 0; c < corner_columns<2>; ++c) {
+        const Pack* node =
+            reinterpret_cast<const Pack*>(flow) + std::size_t(stencil.node[s][c][lane]);
+        a += stencil.weight[s][2 * c][lane] * node[0];
+        b += stencil.weight[s][2 * c + 1][lane] * node[1];
+      }
+    value[lane] = a + b;
+  }
+  transpose(value);
+}
+
+/// k ← A k + f (k ← f in the first stage), returned and stored.
+Pack accumulate(double* increment, std::size_t p, Pack f, double keep, bool first) {
+  const Pack k = first ? f : keep * load(increment + p) + f;
+  store(increment + p, k);
+  return k;
+}
+
+/// Cube root of numbers near one (Newton from one), any other number lane by lane.
+Pack cube_root_near_one(Pack r) {
+  Pack s = broadcast(1.0) + (r - 1.0) * (1.0 / 3.0);
+  for (int newton = 0; newton < 3; ++newton) s = s - (s - r / (s * s)) * (1.0 / 3.0);
+  for (int lane = 0; lane < lanes; ++lane)
+    if (!(r[lane] > 0.9 && r[lane] < 1.1)) s[lane] = __builtin_cbrt(r[lane]);
+  return s;
+}
+
+/// Lanes among the first `count` where the condition holds.
+std::size_t count_lanes(Mask m, std::size_t count) {
+  std::size_t n = 0;
+  for (std::size_t lane = 0; lane < lanes && lane < count; ++lane) n += m[lane] != 0;
+  return n;
+}
+
+/// (abc)² of an ellipsoid of the given volume, (3V/4π)².
+Pack squared_axes_product_3d(Pack volume) {
+  const Pack abc = volume * 0.23873241463784300365;  // 3/(4π)
+  return abc * abc;
+}
+
+/// Restores det B exactly; a matrix that is no longer positive definite becomes a sphere.
+Symmetric3<Pack> close_shape(Symmetric3<Pack> b, Pack volume, std::size_t count,
+                             std::size_t& broken) {
+  const Pack target = squared_axes_product_3d(volume);
+  const Pack det = determinant(b);
+  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (b.xx * b.yy - b.xy * b.xy > 0.0);
+  const Pack s = cube_root_near_one(select(healthy, target / det, broadcast(1.0)));
+  b = {s * b.xx, s * b.xy, s * b.xz, s * b.yy, s * b.yz, s * b.zz};
+  const std::size_t lost = count - count_lanes(healthy, count);
+  if (lost > 0) [[unlikely]] {
+    broken += lost;
+    Pack radius2 = target;
+    for (int lane = 0; lane < lanes; ++lane) radius2[lane] = __builtin_cbrt(target[lane]);
+    b.xx = select(healthy, b.xx, radius2);
+    b.yy = select(healthy, b.yy, radius2);
+    b.zz = select(healthy, b.zz, radius2);
+    b.xy = select(healthy, b.xy, Pack{});
+    b.xz = select(healthy, b.xz, Pack{});
+    b.yz = select(healthy, b.yz, Pack{});
+  }
+  return b;
+}
+
+Symmetric2<Pack> close_shape(Symmetric2<Pack> b, Pack area, std::size_t count,
+                             std::size_t& broken) {
+  const Pack ab = area * 0.31830988618379067154;  // 1/π
+  const Pack target = ab * ab;
+  const Pack det = determinant(b);
+  const auto healthy = (det > 0.0) & (b.xx > 0.0);
+  const Pack s = square_root(select(healthy, target / det, broadcast(1.0)));
+  b = {s * b.xx, s * b.xz, s * b.zz};
+  const std::size_t lost = count - count_lanes(healthy, count);
+  if (lost > 0) [[unlikely]] {
+    broken += lost;
+    b.xx = select(healthy, b.xx, ab);
+    b.zz = select(healthy, b.zz, ab);
+    b.xz = select(healthy, b.xz, Pack{});
+  }
+  return b;
+}
+
+void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Matrix3<Pack>& s) {
+  Symmetric3<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p), load(job.shape[2] + p),
+                     load(job.shape[3] + p), load(job.shape[4] + p), load(job.shape[5] + p)};
+  const auto grow = [&](int c, Pack f) {
+    return accumulate(job.shape_increment[c], p, f, job.keep, job.first);
+  };
+  if (job.shape_integrator == ShapeIntegrator::exponential) {
+    Matrix3<Pack> z;
+    z.xx = grow(0, s.xx);
+    z.xy = grow(1, s.xy);
+    z.xz = grow(2, s.xz);
+    z.yx = grow(3, s.yx);
+    z.yy = grow(4, s.yy);
+    z.yz = grow(5, s.yz);
+    z.zx = grow(6, s.zx);
+    z.zy = grow(7, s.zy);
+    z.zz = -(z.xx + z.yy);
+    if (job.evaluate_only) return;
+    b = congruence(exponential(scaled(broadcast(job.advance), z)), b);
+  } else {
+    const Symmetric3<Pack> rate = shape_rate(s, b);
+    const Symmetric3<Pack> k{grow(0, rate.xx), grow(1, rate.xy), grow(2, rate.xz),
+                             grow(3, rate.yy), grow(4, rate.yz), grow(5, rate.zz)};
+    if (job.evaluate_only) return;
+    b = {b.xx + job.advance * k.xx, b.xy + job.advance * k.xy, b.xz + job.advance * k.xz,
+         b.yy + job.advance * k.yy, b.yz + job.advance * k.yz, b.zz + job.advance * k.zz};
+  }
+  if (job.last) b = close_shape(b, load(job.volume + p), count, job.broken);
+  store(job.shape[0] + p, b.xx);
+  store(job.shape[1] + p, b.xy);
+  store(job.shape[2] + p, b.xz);
+  store(job.shape[3] + p, b.yy);
+  store(job.shape[4] + p, b.yz);
+  store(job.shape[5] + p, b.zz);
+}
+
+void advance_shape(StageJob<2>& job, std::size_t p, std::size_t count, const Matrix2<Pack>& s) {
+  Symmetric2<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p), load(job.shape[2] + p)};
+  const auto grow = [&](int c, Pack f) {
+    return accumulate(job.shape_increment[c], p, f, job.keep, job.first);
+  };
+  if (job.shape_integrator == ShapeIntegrator::exponential) {
+    Matrix2<Pack> z;
+    z.xx = grow(0, s.xx);
+    z.xz = grow(1, s.xz);
+    z.zx = grow(2, s.zx);
+    z.zz = -z.xx;
+    if (job.evaluate_only) return;
+    const double h = job.advance;
+    b = congruence(exponential(Matrix2<Pack>{h * z.xx, h * z.xz, h * z.zx, h * z.zz}), b);
+  } else {
+    const Symmetric2<Pack> rate = shape_rate(s, b);
+    const Symmetric2<Pack> k{grow(0, rate.xx), grow(1, rate.xz), grow(2, rate.zz)};
+    if (job.evaluate_only) return;
+    b = {b.xx + job.advance * k.xx, b.xz + job.advance * k.xz, b.zz + job.advance * k.zz};
+  }
+  if (job.last) b = close_shape(b, load(job.volume + p), count, job.broken);
+  store(job.shape[0] + p, b.xx);
+  store(job.shape[1] + p, b.xz);
+  store(job.shape[2] + p, b.zz);
+}
+
+/// k ← A k + f and, unless only evaluating, y ← y + B Δt k for one variable.
+void advance(double* y, double* increment, std::size_t p, Pack f, double keep, double step,
+             bool first, bool evaluate_only) {
+  const Pack k = accumulate(increment, p, f, keep, first);
+  if (!evaluate_only) store(y + p, load(y + p) + step * k);
+}
+
+void stage_3d(StageJob<3>& job) {
+  using R = FlowRecord<3>;
+  Stencil<3> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = job.end - p;
+    place_points(job.grid, const_cast<const double* const*>(job.position), job.offset, p, stencil);
+    Pack low[8], high[8];
+    interpolate(job.flow, stencil, count, low, high);
+    const auto value = [&](int f) { return f < 8 ? low[f] : high[f - 8]; };
+    for (int d = 0; d < 3; ++d)
+      advance(job.position[d], job.position_increment[d], p, value(R::u + d), job.keep, job.advance,
+              job.first, job.evaluate_only);
+    for (int d = 0; d < 3; ++d)
+      advance(job.vorticity[d], job.vorticity_increment[d], p, value(R::tendency + d), job.keep,
+              job.advance, job.first, job.evaluate_only);
+    const Pack w_z = -(value(R::u_x) + value(R::v_y));
+    advance_shape(job, p, count < lanes ? count : lanes,
+                  Matrix3<Pack>{value(R::u_x), value(R::u_y), value(R::u_z), value(R::v_x),
+                                value(R::v_y), value(R::v_z), value(R::w_x), value(R::w_y), w_z});
+  }
+}
+
+void stage_2d(StageJob<2>& job) {
+  using R = FlowRecord<2>;
+  Stencil<2> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = job.end - p;
+    place_points(job.grid, const_cast<const double* const*>(job.position), job.offset, p, stencil);
+    Pack value[8];
+    interpolate(job.flow, stencil, count, value);
+    for (int d = 0; d < 2; ++d)
+      advance(job.position[d], job.position_increment[d], p, value[R::u + d], job.keep, job.advance,
+              job.first, job.evaluate_only);
+    advance(job.vorticity[0], job.vorticity_increment[0], p, value[R::tendency], job.keep,
+            job.advance, job.first, job.evaluate_only);
+    advance_shape(job, p, count < lanes ? count : lanes,
+                  Matrix2<Pack>{value[R::u_x], value[R::u_z], value[R::w_x], -value[R::u_x]});
+  }
+}
+
+}  // namespace
+
+const dynamics::Kernels dynamics_kernels = {.stage_3d = stage_3d, .stage_2d = stage_2d};
+
+}  // namespace pileus::PILEUS_ISA

@@ -1,0 +1,268 @@
+// Vector kernels of the parcel layer; compiled once per instruction set (see pileus_add_kernels).
+#include "parcels/kernels.hpp"
+#include "parcels/stencil.hpp"
+
+namespace pileus::PILEUS_ISA {
+namespace {
+
+using parcels::CompressJob;
+using parcels::DepositJob;
+using parcels::DisplaceJob;
+
+// ---- support points ------------------------------------------------------------------------
+
+Symmetric3<Pack> load_shape_3d(const double* const* shape, std::size_t p) {
+  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p),
+          load(shape[3] + p), load(shape[4] + p), load(shape[5] + p)};
+}
+Symmetric2<Pack> load_shape_2d(const double* const* shape, std::size_t p) {
+  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p)};
+}
+
+void offsets_3d(const double* const* shape, double* const* offset, std::size_t begin,
+                std::size_t end) {
+  for (std::size_t p = begin; p < end; p += lanes) {
+    const auto o = support_offsets(load_shape_3d(shape, p));
+    store(offset[0] + p, o.first.x);
+    store(offset[1] + p, o.first.y);
+    store(offset[2] + p, o.first.z);
+    store(offset[3] + p, o.second.x);
+    store(offset[4] + p, o.second.y);
+    store(offset[5] + p, o.second.z);
+  }
+}
+void offsets_2d(const double* const* shape, double* const* offset, std::size_t begin,
+                std::size_t end) {
+  for (std::size_t p = begin; p < end; p += lanes) {
+    const auto o = support_offsets(load_shape_2d(shape, p));
+    store(offset[0] + p, o.x);
+    store(offset[1] + p, o.z);
+  }
+}
+
+void ratios_3d(const double* const* shape, double* longest, double* ratio, std::size_t begin,
+               std::size_t end) {
+  for (std::size_t p = begin; p < end; p += lanes) {
+    const auto axes = principal_axes(load_shape_3d(shape, p));
+    store(longest + p, axes.a2);
+    store(ratio + p, axes.a2 / axes.c2);
+  }
+}
+void ratios_2d(const double* const* shape, double* longest, double* ratio, std::size_t begin,
+               std::size_t end) {
+  for (std::size_t p = begin; p < end; p += lanes) {
+    const auto axes = principal_axes(load_shape_2d(shape, p));
+    store(longest + p, axes.a2);
+    store(ratio + p, axes.a2 / axes.b2);
+  }
+}
+
+// ---- deposit -------------------------------------------------------------------------------
+
+/// Bit per lane whose points all lie where the tile may write.
+template <int D>
+unsigned lanes_inside(const DepositJob<D>& job, const Stencil<D>& stencil) {
+  IntPack outside{};
+  for (int s = 0; s < support_points<D>; ++s)
+    for (int d = 0; d < D - 1; ++d) {
+      IntPack distance = *reinterpret_cast<const IntPack*>(stencil.cell[s][d]) - job.tile_first[d];
+      distance = distance < 0 ? distance + job.grid.cells[d] : distance;
+      outside |= distance >= job.tile_count[d];
+    }
+  unsigned inside = 0;
+  for (int lane = 0; lane < lanes; ++lane) inside |= unsigned(outside[lane] == 0) << lane;
+  return inside;
+}
+
+/// Records what one group of eight leaves out; returns the lanes to deposit.
+template <int D>
+unsigned sort_out_strays(DepositJob<D>& job, const Stencil<D>& stencil, std::size_t p) {
+  const std::size_t left = job.end - p;
+  const unsigned valid = left >= lanes ? 0xffu : (1u << left) - 1u;
+  const unsigned inside = lanes_inside<D>(job, stencil) & valid;
+  if (inside != valid) [[unlikely]]
+    for (int lane = 0; lane < lanes; ++lane)
+      if ((valid & ~inside) >> lane & 1u)
+        job.strays[job.stray_count++] = static_cast<std::uint32_t>(p + unsigned(lane));
+  return inside;
+}
+
+void deposit_3d(DepositJob<3>& job) {
+  Stencil<3> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job.grid, job.position, job.offset, p, stencil);
+    const unsigned inside = sort_out_strays<3>(job, stencil, p);
+    Pack record[8];
+    record[0] = load(job.volume + p);
+    for (int f = 0; f < 7; ++f)
+      record[f + 1] = f < job.value_count ? record[0] * load(job.value[f] + p) : Pack{};
+    transpose(record);
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (!(inside >> lane & 1u)) continue;
+      const Pack value = record[lane];
+      for (int s = 0; s < support_points<3>; ++s)
+        for (int c = 0; c < corner_columns<3>; ++c) {
+          Pack* node = reinterpret_cast<Pack*>(job.field) + stencil.node[s][c][lane];
+          node[0] += stencil.weight[s][2 * c][lane] * value;
+          node[1] += stencil.weight[s][2 * c + 1][lane] * value;
+        }
+    }
+  }
+}
+
+typedef double Record2 __attribute__((vector_size(32)));
+
+void deposit_2d(DepositJob<2>& job) {
+  Stencil<2> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job.grid, job.position, job.offset, p, stencil);
+    const unsigned inside = sort_out_strays<2>(job, stencil, p);
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (!(inside >> lane & 1u)) continue;
+      const double volume = job.volume[p + lane];
+      Record2 value{volume, 0, 0, 0};
+      for (int f = 0; f < 3; ++f)
+        if (f < job.value_count) value[f + 1] = volume * job.value[f][p + lane];
+      for (int s = 0; s < support_points<2>; ++s)
+        for (int c = 0; c < corner_columns<2>; ++c) {
+          Record2* node = reinterpret_cast<Record2*>(job.field) + stencil.node[s][c][lane];
+          node[0] += stencil.weight[s][2 * c][lane] * value;
+          node[1] += stencil.weight[s][2 * c + 1][lane] * value;
+        }
+    }
+  }
+}
+
+template <int D>
+void deposit_volume(DepositJob<D>& job) {
+  Stencil<D> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job.grid, job.position, job.offset, p, stencil);
+    const unsigned inside = sort_out_strays<D>(job, stencil, p);
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (!(inside >> lane & 1u)) continue;
+      const double volume = job.volume[p + lane];
+      for (int s = 0; s < support_points<D>; ++s)
+        for (int c = 0; c < corner_columns<D>; ++c) {
+          double* node = job.field + stencil.node[s][c][lane];
+          node[0] += stencil.weight[s][2 * c][lane] * volume;
+          node[1] += stencil.weight[s][2 * c + 1][lane] * volume;
+        }
+    }
+  }
+}
+
+// ---- volume correction ---------------------------------------------------------------------
+
+void place_centre(const KernelGrid<3>& grid, double* const* position, std::size_t p,
+                  Stencil<3>& stencil) {
+  place_point(grid, load(position[0] + p), load(position[1] + p), load(position[2] + p), 1.0, 0,
+              stencil);
+}
+void place_centre(const KernelGrid<2>& grid, double* const* position, std::size_t p,
+                  Stencil<2>& stencil) {
+  place_point(grid, load(position[0] + p), load(position[1] + p), 1.0, 0, stencil);
+}
+
+template <int D>
+void displace(const DisplaceJob<D>& job) {
+  constexpr int width = D == 3 ? 4 : 2;
+  Stencil<D> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_centre(job.grid, job.position, p, stencil);
+    const std::size_t left = job.end - p;
+    for (std::size_t lane = 0; lane < lanes && lane < left; ++lane) {
+      double shift[width] = {};
+      for (int c = 0; c < corner_columns<D>; ++c) {
+        const double* node = job.gradient + std::size_t(stencil.node[0][c][lane]) * width;
+        const double below = stencil.weight[0][2 * c][lane];
+        const double above = stencil.weight[0][2 * c + 1][lane];
+        for (int d = 0; d < width; ++d) shift[d] += below * node[d] + above * node[width + d];
+      }
+      for (int d = 0; d < D; ++d) job.position[d][p + lane] += shift[d];
+    }
+  }
+}
+
+/// One direction of the gradient correction: the difference of the excess across the cell pushes
+/// the centre down the slope; f(1−f) keeps it in its cell, the clip keeps the map monotone.
+double compress_shift(double difference, double fraction, double spacing, double prefactor,
+                      double limit) {
+  double slope = prefactor * difference;
+  slope = slope > limit ? limit : slope;
+  slope = slope < -limit ? -limit : slope;
+  return -spacing * fraction * (1.0 - fraction) * slope;
+}
+
+void compress_3d(const CompressJob<3>& job) {
+  Stencil<3> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_centre(job.grid, job.position, p, stencil);
+    const std::size_t left = job.end - p;
+    for (std::size_t lane = 0; lane < lanes && lane < left; ++lane) {
+      double e[8], w[8];  // corners in the order of the stencil: (x, y) columns, below and above
+      for (int c = 0; c < 4; ++c) {
+        const double* node = job.excess + stencil.node[0][c][lane];
+        e[2 * c] = node[0];
+        e[2 * c + 1] = node[1];
+        w[2 * c] = stencil.weight[0][2 * c][lane];
+        w[2 * c + 1] = stencil.weight[0][2 * c + 1][lane];
+      }
+      const double fx = w[2] + w[3] + w[6] + w[7], fy = w[4] + w[5] + w[6] + w[7],
+                   fz = w[1] + w[3] + w[5] + w[7];
+      const double gx = 1 - fx, gy = 1 - fy, gz = 1 - fz;
+      const double dx = gy * (gz * (e[2] - e[0]) + fz * (e[3] - e[1])) +
+                        fy * (gz * (e[6] - e[4]) + fz * (e[7] - e[5]));
+      const double dy = gx * (gz * (e[4] - e[0]) + fz * (e[5] - e[1])) +
+                        fx * (gz * (e[6] - e[2]) + fz * (e[7] - e[3]));
+      const double dz = gx * (gy * (e[1] - e[0]) + fy * (e[5] - e[4])) +
+                        fx * (gy * (e[3] - e[2]) + fy * (e[7] - e[6]));
+      const std::size_t q = p + lane;
+      job.position[0][q] += compress_shift(dx, fx, job.spacing[0], job.prefactor, job.limit);
+      job.position[1][q] += compress_shift(dy, fy, job.spacing[1], job.prefactor, job.limit);
+      job.position[2][q] += compress_shift(dz, fz, job.spacing[2], job.prefactor, job.limit);
+    }
+  }
+}
+
+void compress_2d(const CompressJob<2>& job) {
+  Stencil<2> stencil;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_centre(job.grid, job.position, p, stencil);
+    const std::size_t left = job.end - p;
+    for (std::size_t lane = 0; lane < lanes && lane < left; ++lane) {
+      const double* low = job.excess + stencil.node[0][0][lane];
+      const double* high = job.excess + stencil.node[0][1][lane];
+      const double fx = stencil.weight[0][2][lane] + stencil.weight[0][3][lane];
+      const double fz = stencil.weight[0][1][lane] + stencil.weight[0][3][lane];
+      const double dx = (1 - fz) * (high[0] - low[0]) + fz * (high[1] - low[1]);
+      const double dz = (1 - fx) * (low[1] - low[0]) + fx * (high[1] - high[0]);
+      const std::size_t q = p + lane;
+      job.position[0][q] += compress_shift(dx, fx, job.spacing[0], job.prefactor, job.limit);
+      job.position[1][q] += compress_shift(dz, fz, job.spacing[1], job.prefactor, job.limit);
+    }
+  }
+}
+
+}  // namespace
+
+#define PILEUS_STRING_(x) #x
+#define PILEUS_STRING(x) PILEUS_STRING_(x)
+
+const parcels::Kernels parcel_kernels = {
+    .support_offsets_3d = offsets_3d,
+    .support_offsets_2d = offsets_2d,
+    .deposit_3d = deposit_3d,
+    .deposit_2d = deposit_2d,
+    .deposit_volume_3d = deposit_volume<3>,
+    .deposit_volume_2d = deposit_volume<2>,
+    .displace_3d = displace<3>,
+    .displace_2d = displace<2>,
+    .compress_3d = compress_3d,
+    .compress_2d = compress_2d,
+    .axis_ratios_3d = ratios_3d,
+    .axis_ratios_2d = ratios_2d,
+    .instruction_set = PILEUS_STRING(PILEUS_ISA),
+};
+
+}  // namespace pileus::PILEUS_ISA

@@ -1,0 +1,160 @@
+// Where the support points of eight parcels fall on the mesh, and with which weights.
+//
+// Shared by deposit (parcel to grid) and interpolation (grid to parcel), which must use the same
+// weights for the pair to conserve. Horizontal directions wrap; vertically a point may reach one
+// halo level beyond a wall and is held there, so that weights always sum to one.
+#pragma once
+#include "parcels/ellipsoid.hpp"
+#include "parcels/kernel_grid.hpp"
+
+namespace pileus::PILEUS_ISA {
+
+using parcels::KernelGrid;
+
+template <int D>
+inline constexpr int support_points = D == 3 ? 4 : 2;
+/// Columns of nodes around a cell; each contributes two levels.
+template <int D>
+inline constexpr int corner_columns = D == 3 ? 4 : 2;
+
+/// Cell and position in it along one periodic direction.
+struct PeriodicIndex {
+  IntPack low, high;  // node indices on either side, in [0, n)
+  Pack fraction;
+};
+static inline PeriodicIndex locate_periodic(Pack x, double lower, double inverse_spacing, double n,
+                                            double inverse_n, std::int32_t cells) {
+  Pack xi = (x - lower) * inverse_spacing;
+  // Exact for any number of domain lengths away; rounding at the seam is caught by the clamp.
+  xi = xi - n * to_pack(floor_to_int(xi * inverse_n));
+  PeriodicIndex index;
+  index.low = floor_to_int(xi);
+  // A value that is not a number lands in cell 0 instead of outside the mesh.
+  index.low = index.low < 0 ? IntPack{} : index.low;
+  index.low = index.low > cells - 1 ? IntPack{} + (cells - 1) : index.low;
+  index.fraction = xi - to_pack(index.low);
+  index.high = index.low + 1;
+  index.high = index.high == cells ? IntPack{} : index.high;
+  return index;
+}
+
+struct WallIndex {
+  IntPack low;  // stored level (k + 1) of the node below
+  Pack fraction;
+};
+static inline WallIndex locate_vertical(Pack z, double lower, double inverse_spacing,
+                                        std::int32_t cells) {
+  Pack xi = (z - lower) * inverse_spacing;
+  xi = maximum(xi, broadcast(-1.0));
+  xi = minimum(xi, broadcast(cells + 1.0));
+  WallIndex index;
+  IntPack k = floor_to_int(xi);
+  k = k < -1 ? IntPack{} - 1 : k;
+  k = k > cells ? IntPack{} + cells : k;  // the top halo level itself belongs to the last interval
+  index.fraction = xi - to_pack(k);
+  index.low = k + 1;
+  return index;
+}
+
+/// Node indices and weights of all support points of eight parcels. For each corner column the
+/// node below; the node above follows it in memory.
+template <int D>
+struct Stencil {
+  alignas(64) std::int32_t node[support_points<D>][corner_columns<D>][lanes];
+  alignas(64) double weight[support_points<D>][2 * corner_columns<D>][lanes];
+  /// Base cell of every point, for the test whether a tile may write there.
+  alignas(64) std::int32_t cell[support_points<D>][D - 1][lanes];
+};
+
+static inline void put(std::int32_t* to, IntPack value) {
+  *reinterpret_cast<IntPack*>(to) = value;
+}
+static inline void put(double* to, Pack value) {
+  *reinterpret_cast<Pack*>(to) = value;
+}
+
+/// Fills the entries of one point at (x, y, z); `share` is the point's part of the parcel.
+static inline void place_point(const KernelGrid<3>& grid, Pack x, Pack y, Pack z, double share,
+                               int point, Stencil<3>& stencil) {
+  const PeriodicIndex i = locate_periodic(x, grid.lower[0], grid.inverse_spacing[0],
+                                          grid.cells_real[0], grid.inverse_cells[0], grid.cells[0]);
+  const PeriodicIndex j = locate_periodic(y, grid.lower[1], grid.inverse_spacing[1],
+                                          grid.cells_real[1], grid.inverse_cells[1], grid.cells[1]);
+  const WallIndex k = locate_vertical(z, grid.lower[2], grid.inverse_spacing[2], grid.cells[2]);
+  const IntPack row_low = j.low * grid.cells[0], row_high = j.high * grid.cells[0];
+  put(stencil.node[point][0], (row_low + i.low) * grid.levels + k.low);
+  put(stencil.node[point][1], (row_low + i.high) * grid.levels + k.low);
+  put(stencil.node[point][2], (row_high + i.low) * grid.levels + k.low);
+  put(stencil.node[point][3], (row_high + i.high) * grid.levels + k.low);
+  const Pack above = share * k.fraction, below = share - above;
+  const Pack w11 = i.fraction * j.fraction, w10 = i.fraction - w11, w01 = j.fraction - w11,
+             w00 = 1.0 - i.fraction - w01;
+  put(stencil.weight[point][0], w00 * below);
+  put(stencil.weight[point][1], w00 * above);
+  put(stencil.weight[point][2], w10 * below);
+  put(stencil.weight[point][3], w10 * above);
+  put(stencil.weight[point][4], w01 * below);
+  put(stencil.weight[point][5], w01 * above);
+  put(stencil.weight[point][6], w11 * below);
+  put(stencil.weight[point][7], w11 * above);
+  put(stencil.cell[point][0], i.low);
+  put(stencil.cell[point][1], j.low);
+}
+static inline void place_point(const KernelGrid<2>& grid, Pack x, Pack z, double share, int point,
+                               Stencil<2>& stencil) {
+  const PeriodicIndex i = locate_periodic(x, grid.lower[0], grid.inverse_spacing[0],
+                                          grid.cells_real[0], grid.inverse_cells[0], grid.cells[0]);
+  const WallIndex k = locate_vertical(z, grid.lower[1], grid.inverse_spacing[1], grid.cells[1]);
+  put(stencil.node[point][0], i.low * grid.levels + k.low);
+  put(stencil.node[point][1], i.high * grid.levels + k.low);
+  const Pack above = share * k.fraction, below = share - above;
+  put(stencil.weight[point][0], below - i.fraction * below);
+  put(stencil.weight[point][1], above - i.fraction * above);
+  put(stencil.weight[point][2], i.fraction * below);
+  put(stencil.weight[point][3], i.fraction * above);
+  put(stencil.cell[point][0], i.low);
+}
+
+/// Support-point offsets of parcels, one array per component: 3D first.x y z, second.x y z;
+/// 2D x, z.
+template <int D>
+inline constexpr int offset_components = D == 3 ? 6 : 2;
+
+static inline void place_points(const KernelGrid<3>& grid, const double* const* position,
+                                const double* const* offset, std::size_t p, Stencil<3>& stencil) {
+  const Pack x = load(position[0] + p), y = load(position[1] + p), z = load(position[2] + p);
+  const Pack px = load(offset[0] + p), py = load(offset[1] + p), pz = load(offset[2] + p);
+  const Pack qx = load(offset[3] + p), qy = load(offset[4] + p), qz = load(offset[5] + p);
+  place_point(grid, x + px, y + py, z + pz, 0.25, 0, stencil);
+  place_point(grid, x + qx, y + qy, z + qz, 0.25, 1, stencil);
+  place_point(grid, x - px, y - py, z - pz, 0.25, 2, stencil);
+  place_point(grid, x - qx, y - qy, z - qz, 0.25, 3, stencil);
+}
+static inline void place_points(const KernelGrid<2>& grid, const double* const* position,
+                                const double* const* offset, std::size_t p, Stencil<2>& stencil) {
+  const Pack x = load(position[0] + p), z = load(position[1] + p);
+  const Pack px = load(offset[0] + p), pz = load(offset[1] + p);
+  place_point(grid, x + px, z + pz, 0.5, 0, stencil);
+  place_point(grid, x - px, z - pz, 0.5, 1, stencil);
+}
+
+/// Transposes an 8×8 block held in eight packs.
+static inline void transpose(Pack (&r)[8]) {
+  Pack t[8];
+  for (int i = 0; i < 8; i += 2) {
+    t[i] = __builtin_shuffle(r[i], r[i + 1], Mask{0, 8, 2, 10, 4, 12, 6, 14});
+    t[i + 1] = __builtin_shuffle(r[i], r[i + 1], Mask{1, 9, 3, 11, 5, 13, 7, 15});
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int k = 0; k < 2; ++k) {
+      r[i + k] = __builtin_shuffle(t[i + k], t[i + k + 2], Mask{0, 1, 8, 9, 4, 5, 12, 13});
+      r[i + k + 2] = __builtin_shuffle(t[i + k], t[i + k + 2], Mask{2, 3, 10, 11, 6, 7, 14, 15});
+    }
+  for (int k = 0; k < 4; ++k) {
+    t[k] = __builtin_shuffle(r[k], r[k + 4], Mask{0, 1, 2, 3, 8, 9, 10, 11});
+    t[k + 4] = __builtin_shuffle(r[k], r[k + 4], Mask{4, 5, 6, 7, 12, 13, 14, 15});
+  }
+  for (int i = 0; i < 8; ++i) r[i] = t[i];
+}
+
+}  // namespace pileus::PILEUS_ISA

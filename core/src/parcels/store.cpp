@@ -1,0 +1,87 @@
+#include "parcels/store.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/parallel.hpp"
+
+namespace pileus::parcels {
+namespace {
+
+/// Elements beyond the last parcel that vector loops may read (never use): one full vector.
+constexpr std::size_t read_ahead = 8;
+
+}  // namespace
+
+Store::Store(int dimension, std::vector<Scalar> scalars)
+    : dimension_(dimension), scalars_(std::move(scalars)) {
+  std::stable_partition(scalars_.begin(), scalars_.end(),
+                        [](const Scalar& s) { return s.nature != Nature::derived; });
+  const auto derived = std::count_if(scalars_.begin(), scalars_.end(),
+                                     [](const Scalar& s) { return s.nature == Nature::derived; });
+  columns_.resize(static_cast<std::size_t>(first_scalar()) + scalars_.size());
+  state_columns_ = column_count() - static_cast<int>(derived);
+  resize(0);
+}
+
+void Store::resize(std::size_t size) {
+  for (auto& column : columns_) column.resize(size + read_ahead);
+  uid_.resize(size + read_ahead);
+  size_ = size;
+}
+
+int Store::find_scalar(std::string_view name) const {
+  for (std::size_t i = 0; i < scalars_.size(); ++i)
+    if (scalars_[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+std::string Store::column_name(int index) const {
+  static constexpr std::array<const char*, 13> names_3d = {
+      "x_position",  "y_position",  "z_position", "volume", "x_vorticity",
+      "y_vorticity", "z_vorticity", "B11",        "B12",    "B13",
+      "B22",         "B23",         "B33"};
+  static constexpr std::array<const char*, 7> names_2d = {
+      "x_position", "z_position", "volume", "vorticity", "B11", "B12", "B22"};
+  if (index >= first_scalar())
+    return scalars_[static_cast<std::size_t>(index - first_scalar())].name;
+  return dimension_ == 3 ? names_3d[static_cast<std::size_t>(index)]
+                         : names_2d[static_cast<std::size_t>(index)];
+}
+
+void Store::gather(const std::vector<std::uint32_t>& source) {
+  const std::size_t count = source.size();
+  for (int c = 0; c < state_columns_; ++c) {
+    auto& column = columns_[static_cast<std::size_t>(c)];
+    spare_.discard_and_resize(count + read_ahead);
+    const double* from = column.data();
+    double* to = spare_.data();
+    parallel_chunks(
+        count,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t p = begin; p < end; ++p) to[p] = from[source[p]];
+        },
+        16384);
+    column.swap(spare_);
+  }
+  spare_uid_.discard_and_resize(count + read_ahead);
+  parallel_chunks(
+      count,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) spare_uid_[p] = uid_[source[p]];
+      },
+      16384);
+  uid_.swap(spare_uid_);
+  for (int c = state_columns_; c < column_count(); ++c)
+    columns_[static_cast<std::size_t>(c)].resize(count + read_ahead);
+  size_ = count;
+}
+
+std::size_t Store::allocated_bytes() const {
+  std::size_t bytes =
+      uid_.allocated_bytes() + spare_.allocated_bytes() + spare_uid_.allocated_bytes();
+  for (const auto& column : columns_) bytes += column.allocated_bytes();
+  return bytes;
+}
+
+}  // namespace pileus::parcels
