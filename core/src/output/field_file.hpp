@@ -1,0 +1,43 @@
+// The three kinds of record file a run writes.
+#pragma once
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "output/record_file.hpp"
+
+namespace pileus::output {
+
+/// Gridded fields over (time, z, y, x), in 2D (time, z, x), with an XDMF sidecar `<name>.xmf`.
+/// `axes` and values as `node_axes` and `copy_nodes` give them.
+class FieldFile {
+ public:
+  FieldFile(std::filesystem::path path, std::vector<Axis> axes, std::vector<Variable> variables,
+            Provenance provenance, Encoding encoding, Start start);
+
+  /// See RecordFile::append.
+  void append(double time, std::span<const std::vector<double>> values);
+  const RecordFile& records() const { return records_; }
+
+ private:
+  void write_sidecar() const;
+  RecordFile records_;
+};
+
+/// Horizontal means and the like over (time, z), exact.
+class ProfileFile : public RecordFile {
+ public:
+  ProfileFile(std::filesystem::path path, Axis height, std::vector<Variable> variables,
+              Provenance provenance, Start start);
+};
+
+/// Named numbers over time, exact.
+class SeriesFile : public RecordFile {
+ public:
+  SeriesFile(std::filesystem::path path, std::vector<Variable> variables, Provenance provenance,
+             Start start);
+  /// One record: a number per variable.
+  void append(double time, std::span<const double> values);
+};
+
+}  // namespace pileus::output

@@ -1,0 +1,144 @@
+#include "output/record_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace pileus::output {
+
+using hdf5::Id;
+using hdf5::Session;
+
+namespace {
+/// Chunks of about this size: few enough to list quickly, small enough that a section of a field
+/// reads little more than it needs.
+constexpr std::size_t largest_chunk_bytes = std::size_t{4} << 20;
+/// Records smaller than this share chunks, which then stay uncompressed: rewriting a compressed
+/// chunk at every append would leave its old copy behind as dead space.
+constexpr std::size_t small_record_bytes = 4096;
+}  // namespace
+
+RecordFile::RecordFile(std::filesystem::path path, std::vector<Axis> axes,
+                       std::vector<Variable> variables, Provenance provenance, Encoding encoding,
+                       Start start)
+    : path_(std::move(path)),
+      axes_(std::move(axes)),
+      variables_(std::move(variables)),
+      provenance_(std::move(provenance)),
+      encoding_(encoding) {
+  if (record_size() * encoding_.value_bytes() < small_record_bytes) encoding_.compress = false;
+  refuse_existing(path_, start);
+  if (start.kind == Start::Kind::resume && std::filesystem::exists(path_)) resume(start.time);
+}
+
+std::size_t RecordFile::record_size() const {
+  std::size_t size = 1;
+  for (const Axis& axis : axes_) size *= axis.values.size();
+  return size;
+}
+
+void RecordFile::append(double time, std::span<const std::vector<double>> values) {
+  append_records(std::span(&time, 1), values);
+}
+
+void RecordFile::append_records(std::span<const double> times,
+                                std::span<const std::vector<double>> values) {
+  if (values.size() != variables_.size())
+    throw std::invalid_argument(fmt::format("{}: {} variables given, {} declared", path_.string(),
+                                            values.size(), variables_.size()));
+  for (std::size_t v = 0; v < values.size(); ++v)
+    if (values[v].size() != record_size() * times.size())
+      throw std::invalid_argument(fmt::format("{}: {} values of {}, {} expected", path_.string(),
+                                              values[v].size(), variables_[v].name,
+                                              record_size() * times.size()));
+  if (times.empty()) return;
+  require_later(path_, times_, times);
+  Session session = exists_ ? Session::update(path_) : Session::create(path_);
+  if (!exists_) create(session);
+  extend(session, times, values);
+  session.commit();
+  exists_ = true;
+  times_.insert(times_.end(), times.begin(), times.end());
+}
+
+VariableShape RecordFile::shape(std::vector<hid_t> scales) const {
+  VariableShape shape{std::move(scales), {0}, {H5S_UNLIMITED}, {1}};
+  const std::size_t record_bytes = record_size() * encoding_.value_bytes();
+  if (record_bytes < small_record_bytes) shape.chunk[0] = small_record_bytes / record_bytes;
+  for (const Axis& axis : axes_) {
+    shape.extent.push_back(axis.values.size());
+    shape.maximum.push_back(axis.values.size());
+    shape.chunk.push_back(axis.values.size());
+  }
+  if (!axes_.empty() && record_bytes > largest_chunk_bytes) {
+    const std::size_t slab_bytes = record_bytes / axes_.front().values.size();
+    shape.chunk[1] = std::max<std::size_t>(1, largest_chunk_bytes / slab_bytes);
+  }
+  return shape;
+}
+
+void RecordFile::create(const Session& session) const {
+  write_provenance(session, session.file(), provenance_);
+  std::vector<Id> scales;
+  scales.push_back(create_time(session, session.file()));
+  for (const Axis& axis : axes_) scales.push_back(create_axis(session, session.file(), axis));
+  const VariableShape over_axes = shape({scales.begin(), scales.end()});
+  for (const Variable& variable : variables_)
+    create_variable(session, session.file(), variable, encoding_, over_axes);
+}
+
+void RecordFile::extend(const Session& session, std::span<const double> times,
+                        std::span<const std::vector<double>> values) {
+  const Id time = hdf5::open_dataset(session, session.file(), "time");
+  std::vector<hsize_t> start = hdf5::extent_of(session, time);
+  if (start != std::vector<hsize_t>{times_.size()})
+    throw Error(ExitCode::file, fmt::format("{}: another program changed the file: {} records "
+                                            "were expected, {} are there.",
+                                            path_.string(), times_.size(), start.at(0)));
+  std::vector<hsize_t> count{times.size()}, end{start[0] + times.size()};
+  session.check(H5Dset_extent(time, end.data()), "extend time");
+  hdf5::write_slab(session, time, start, count, H5T_NATIVE_DOUBLE, times.data());
+  for (const Axis& axis : axes_) {
+    start.push_back(0);
+    count.push_back(axis.values.size());
+    end.push_back(axis.values.size());
+  }
+  for (std::size_t v = 0; v < variables_.size(); ++v) {
+    const Id dataset = hdf5::open_dataset(session, session.file(), variables_[v].name);
+    session.check(H5Dset_extent(dataset, end.data()), "extend " + variables_[v].name);
+    const void* data = encode(values[v], encoding_, floats_, doubles_);
+    hdf5::write_slab(session, dataset, start, count, encoding_.memory_type(), data);
+  }
+}
+
+void RecordFile::resume(double time) {
+  Session session = Session::update(path_);
+  const hid_t file = session.file();
+  times_ = hdf5::read_doubles(session, file, "time");
+  times_.resize(records_until(times_, time));
+  const Id time_axis = hdf5::open_dataset(session, file, "time");
+  std::vector<hsize_t> extent{times_.size()};
+  session.check(H5Dset_extent(time_axis, extent.data()), "shorten time");
+  for (const Axis& axis : axes_) extent.push_back(axis.values.size());
+  for (const Variable& variable : variables_) {
+    if (!hdf5::has_object(file, variable.name))
+      throw Error(ExitCode::file,
+                  fmt::format("{}: the file of the run to resume has no variable {}.",
+                              path_.string(), variable.name));
+    const Id dataset = hdf5::open_dataset(session, file, variable.name);
+    std::vector<hsize_t> found = hdf5::extent_of(session, dataset);
+    const bool longer = !found.empty() && found[0] >= extent[0];
+    if (longer) found[0] = extent[0];
+    if (found != extent)
+      throw Error(ExitCode::file,
+                  fmt::format("{}: variable {} of the run to resume has another shape.",
+                              path_.string(), variable.name));
+    session.check(H5Dset_extent(dataset, extent.data()), "shorten " + variable.name);
+  }
+  session.commit();
+  exists_ = true;
+}
+
+}  // namespace pileus::output

@@ -1,0 +1,231 @@
+#include "output/staged_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/sha256.hpp"
+
+namespace pileus::output {
+
+namespace {
+
+constexpr char journal_magic[8] = {'P', 'I', 'L', 'E', 'U', 'S', 'J', '1'};
+
+/// Journal: this header, then page_count times {offset, bytes, content}, then the SHA-256 of all
+/// that. Native byte order: it lives for milliseconds on one machine.
+struct JournalHeader {
+  char magic[8];
+  std::uint64_t committed_bytes, final_bytes, page_count;
+};
+struct PageHeader {
+  std::uint64_t offset, bytes;
+};
+
+void append_bytes(std::vector<std::byte>& to, const void* data, std::size_t bytes) {
+  const auto* first = static_cast<const std::byte*>(data);
+  to.insert(to.end(), first, first + bytes);
+}
+
+bool journal_is_complete(const std::string& text) {
+  constexpr std::size_t digest_bytes = std::tuple_size_v<Sha256::Digest>;
+  if (text.size() < sizeof(JournalHeader) + digest_bytes) return false;
+  if (std::memcmp(text.data(), journal_magic, sizeof journal_magic) != 0) return false;
+  const std::size_t body = text.size() - digest_bytes;
+  const Sha256::Digest digest = Sha256().update(text.data(), body).finish();
+  return std::memcmp(digest.data(), text.data() + body, digest_bytes) == 0;
+}
+
+std::uint64_t file_size(int descriptor, const std::filesystem::path& path) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) throw file_error(path, "read", errno);
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+}  // namespace
+
+std::filesystem::path StagedFile::journal_path() const {
+  return path_.string() + ".journal";
+}
+std::filesystem::path StagedFile::aside_path() const {
+  return path_.string() + ".tmp";
+}
+
+StagedFile::StagedFile(std::filesystem::path path, Mode mode)
+    : path_(std::move(path)), mode_(mode) {
+  if (mode_ == Mode::create) {
+    file_ = Descriptor(aside_path(), O_RDWR | O_CREAT | O_TRUNC, "create");
+    return;
+  }
+  file_ = Descriptor(path_, mode_ == Mode::update ? O_RDWR : O_RDONLY, "open");
+  if (mode_ == Mode::update) finish_interrupted_commit();
+  committed_ = size_ = file_size(file_.get(), path_);
+}
+
+StagedFile::~StagedFile() {
+  discard();
+}
+
+bool StagedFile::read(std::uint64_t offset, std::size_t bytes, void* buffer) const {
+  auto* to = static_cast<std::byte*>(buffer);
+  const std::int64_t count = read_fully(file_.get(), to, bytes, offset);
+  if (count < 0) return false;
+  std::memset(to + count, 0, bytes - static_cast<std::size_t>(count));
+  const std::uint64_t end = std::min(offset + bytes, committed_);
+  for (auto page = held_.lower_bound(offset / page_bytes);
+       page != held_.end() && page->first * page_bytes < end; ++page) {
+    const std::uint64_t page_start = page->first * page_bytes;
+    const std::uint64_t from = std::max(offset, page_start);
+    const std::uint64_t to_end = std::min(end, page_start + page_bytes);
+    std::memcpy(to + (from - offset), page->second.get() + (from - page_start), to_end - from);
+  }
+  return true;
+}
+
+StagedFile::Page& StagedFile::held_page(std::uint64_t index) {
+  Page& page = held_[index];
+  if (!page) {
+    page = std::make_unique<std::byte[]>(page_bytes);
+    if (read_fully(file_.get(), page.get(), page_bytes, index * page_bytes) < 0) failure_ = errno;
+  }
+  return page;
+}
+
+void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buffer) {
+  if (failure_ != 0 || bytes == 0) return;
+  if (!file_ || mode_ == Mode::read) {
+    failure_ = EBADF;
+    return;
+  }
+  const auto* from = static_cast<const std::byte*>(buffer);
+  const std::uint64_t end = offset + bytes;
+  std::uint64_t at = offset;
+  while (at < std::min(end, committed_)) {
+    const std::uint64_t index = at / page_bytes, page_start = index * page_bytes;
+    const std::uint64_t stop = std::min({end, committed_, page_start + page_bytes});
+    std::memcpy(held_page(index).get() + (at - page_start), from + (at - offset), stop - at);
+    at = stop;
+  }
+  if (at < end && !write_fully(file_.get(), from + (at - offset), end - at, at)) failure_ = errno;
+  size_ = std::max(size_, end);
+}
+
+void StagedFile::commit(bool durable) {
+  if (failure_ != 0) {
+    const int reason = failure_;
+    discard();
+    throw file_error(path_, "write", reason);
+  }
+  try {
+    mode_ == Mode::create ? commit_new(durable) : commit_update(durable);
+  } catch (...) {
+    discard();
+    throw;
+  }
+  held_.clear();
+  file_.reset();
+}
+
+void StagedFile::commit_new(bool durable) {
+  if (::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0 ||
+      (durable && ::fsync(file_.get()) != 0))
+    throw file_error(path_, "write", errno);
+  // A journal left by an earlier file of this name must not be applied to the new one.
+  ::unlink(journal_path().c_str());
+  if (::rename(aside_path().c_str(), path_.c_str()) != 0) throw file_error(path_, "create", errno);
+  if (durable) sync_directory(path_.parent_path());
+}
+
+std::vector<std::byte> StagedFile::journal() const {
+  std::vector<std::byte> text;
+  text.reserve(sizeof(JournalHeader) + held_.size() * (page_bytes + sizeof(PageHeader)) + 32);
+  JournalHeader header{{}, committed_, size_, 0};
+  std::memcpy(header.magic, journal_magic, sizeof journal_magic);
+  const std::uint64_t end = std::min(committed_, size_);
+  for (const auto& [index, page] : held_)
+    if (index * page_bytes < end) ++header.page_count;
+  append_bytes(text, &header, sizeof header);
+  for (const auto& [index, page] : held_) {
+    const std::uint64_t start = index * page_bytes;
+    if (start >= end) continue;
+    const PageHeader page_header{start, std::min(page_bytes, end - start)};
+    append_bytes(text, &page_header, sizeof page_header);
+    append_bytes(text, page.get(), page_header.bytes);
+  }
+  const Sha256::Digest digest = Sha256().update(text.data(), text.size()).finish();
+  append_bytes(text, digest.data(), digest.size());
+  return text;
+}
+
+void StagedFile::apply(const std::vector<std::byte>& journal) {
+  JournalHeader header;
+  std::memcpy(&header, journal.data(), sizeof header);
+  const std::byte* at = journal.data() + sizeof header;
+  for (std::uint64_t page = 0; page < header.page_count; ++page) {
+    PageHeader page_header;
+    std::memcpy(&page_header, at, sizeof page_header);
+    at += sizeof page_header;
+    if (!write_fully(file_.get(), at, page_header.bytes, page_header.offset))
+      throw file_error(path_, "write", errno);
+    at += page_header.bytes;
+  }
+  if (::ftruncate(file_.get(), static_cast<off_t>(header.final_bytes)) != 0)
+    throw file_error(path_, "set the size", errno);
+}
+
+void StagedFile::commit_update(bool durable) {
+  const std::vector<std::byte> changes = journal();
+  const std::filesystem::path beside = journal_path();
+  // New bytes have to be on the disk before the journal that refers to them.
+  if (durable && ::fsync(file_.get()) != 0) throw file_error(path_, "sync", errno);
+  {
+    const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC, "write");
+    if (!write_fully(file.get(), changes.data(), changes.size(), 0) ||
+        (durable && ::fsync(file.get()) != 0)) {
+      const int reason = errno;
+      ::unlink(beside.c_str());
+      throw file_error(path_, "write", reason);
+    }
+  }
+  // From here on the change is decided; a failure leaves the journal for the next opening.
+  committed_ = std::max(committed_, size_);
+  apply(changes);
+  if (durable && ::fsync(file_.get()) != 0) throw file_error(path_, "sync", errno);
+  ::unlink(beside.c_str());
+}
+
+void StagedFile::finish_interrupted_commit() {
+  const std::filesystem::path beside = journal_path();
+  if (::access(beside.c_str(), F_OK) != 0) return;
+  const std::string text = read_text_file(beside);
+  JournalHeader header{};
+  if (journal_is_complete(text)) {
+    std::memcpy(&header, text.data(), sizeof header);
+    if (file_size(file_.get(), path_) >= std::min(header.committed_bytes, header.final_bytes)) {
+      const auto* first = reinterpret_cast<const std::byte*>(text.data());
+      apply(std::vector<std::byte>(first, first + text.size()));
+    }
+  }
+  ::unlink(beside.c_str());
+}
+
+void StagedFile::discard() noexcept {
+  if (!file_) return;
+  if (mode_ == Mode::create) ::unlink(aside_path().c_str());
+  if (mode_ == Mode::update) {
+    struct stat status {};
+    // Only what this object added goes; a decided commit raised committed_ and keeps its bytes.
+    if (::fstat(file_.get(), &status) == 0 &&
+        static_cast<std::uint64_t>(status.st_size) > committed_)
+      if (::ftruncate(file_.get(), static_cast<off_t>(committed_)) != 0) failure_ = errno;
+  }
+  held_.clear();
+  file_.reset();
+}
+
+}  // namespace pileus::output
