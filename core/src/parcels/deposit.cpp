@@ -21,11 +21,13 @@ void run_kernel(DepositJob<2>& job, int width) {
 /// image of parcels inside: add it one level inside.
 void fold_column(double* column, int nz, int width) {
   const auto level = [&](int k) { return column + std::ptrdiff_t(k + 1) * width; };
+  // With a single layer of cells the level inside is the other wall, a half cell itself.
+  const double inside = nz == 1 ? 2.0 : 1.0;
   for (int f = 0; f < width; ++f) {
     level(0)[f] *= 2;
     level(nz)[f] *= 2;
-    level(1)[f] += level(-1)[f];
-    level(nz - 1)[f] += level(nz + 1)[f];
+    level(1)[f] += inside * level(-1)[f];
+    level(nz - 1)[f] += inside * level(nz + 1)[f];
   }
 }
 

@@ -24,6 +24,8 @@ class SupportOffsets {
   /// The arrays as scratch memory between two updates.
   double* scratch(int c) { return data_[static_cast<std::size_t>(c)].data(); }
   void resize(std::size_t parcels);
+  /// Parcels there is room for, vector overhang included.
+  std::size_t capacity() const { return data_[0].size(); }
   std::size_t allocated_bytes() const;
 
  private:

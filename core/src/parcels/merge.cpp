@@ -1,0 +1,212 @@
+#include "parcels/merge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.hpp"
+#include "parcels/ellipsoid.hpp"
+
+namespace pileus::parcels {
+namespace {
+
+constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr double three_over_four_pi = 0.23873241463784300365;
+constexpr double one_over_pi = 0.31830988618379067154;
+
+/// Shortest way around a periodic direction.
+double minimum_image(double difference, double extent) {
+  return difference - extent * std::round(difference / extent);
+}
+
+template <int D>
+void separation(const mesh::Grid<D>& grid, const Store& store, std::uint32_t from, std::uint32_t to,
+                double (&d)[D]) {
+  for (int a = 0; a < D; ++a) d[a] = store.position(a)[to] - store.position(a)[from];
+  for (int a = 0; a < D - 1; ++a) d[a] = minimum_image(d[a], grid.extent[a]);
+}
+
+}  // namespace
+
+template <int D>
+Merge<D>::Merge(const mesh::Grid<D>& grid, double smallest_volume)
+    : grid_(grid), smallest_volume_(smallest_volume) {}
+
+template <int D>
+MergeCounts Merge<D>::run(Store& store, const CellOrder<D>& order) {
+  MergeCounts counts;
+  gone_.clear();
+  find_links(store, order);
+  counts.small = small_.size();
+  if (links_.empty()) return counts;
+
+  const std::uint64_t* uid = store.uid();
+  sources_.clear();
+  for (const Link& link : graph_.resolve(links_, store.size()))
+    sources_.push_back({uid[link.to], uid[link.from], link.to, link.from});
+  // A fixed order of summation, whatever the order in memory.
+  std::sort(sources_.begin(), sources_.end(), [](const Source& a, const Source& b) {
+    return a.receiver_uid != b.receiver_uid ? a.receiver_uid < b.receiver_uid : a.uid < b.uid;
+  });
+  cluster_begin_.clear();
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    if (s == 0 || sources_[s].receiver != sources_[s - 1].receiver) cluster_begin_.push_back(s);
+  cluster_begin_.push_back(sources_.size());
+
+  const std::size_t clusters = cluster_begin_.size() - 1;
+  parallel_chunks(
+      clusters,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+          merge_cluster(store, sources_.data() + cluster_begin_[c],
+                        sources_.data() + cluster_begin_[c + 1]);
+      },
+      256);
+  gone_.assign(store.size(), 0);
+  for (const Source& s : sources_) gone_[s.source] = 1;
+  for (std::size_t c = 0; c < clusters; ++c) {
+    const std::size_t members = cluster_begin_[c + 1] - cluster_begin_[c];
+    ++counts.clusters[std::min<std::size_t>(members, 7) - 1];
+  }
+  counts.merged = sources_.size();
+  return counts;
+}
+
+template <int D>
+void Merge<D>::find_links(const Store& store, const CellOrder<D>& order) {
+  small_.clear();
+  links_.clear();
+  const double* volume = store.volume();
+  for (const std::uint32_t p : order.order())
+    if (volume[p] < smallest_volume_) small_.push_back(p);
+  if (small_.empty() || store.size() < 2) return;
+  std::sort(small_.begin(), small_.end(),
+            [uid = store.uid()](std::uint32_t a, std::uint32_t b) { return uid[a] < uid[b]; });
+  links_.resize(small_.size());
+  parallel_chunks(
+      small_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m)
+          links_[m] = {small_[m], nearest(store, order, small_[m])};
+      },
+      256);
+}
+
+/// Nearest other parcel by distance of centres among the cells around the nearest node, and around
+/// ever more of them while those are empty. Equal distances go to the smaller identity.
+template <int D>
+std::uint32_t Merge<D>::nearest(const Store& store, const CellOrder<D>& order,
+                                std::uint32_t p) const {
+  const auto node_below = [&](int axis) {
+    return static_cast<int>(
+        std::lround((store.position(axis)[p] - grid_.lower[axis]) * grid_.inverse_spacing[axis]));
+  };
+  const int ci = node_below(0), cj = D == 3 ? node_below(1) : 0, ck = node_below(D - 1);
+  const int nx = grid_.nx(), ny = grid_.ny(), nz = grid_.nz();
+  const std::uint64_t* uid = store.uid();
+  std::uint32_t best = nobody;
+  double best_distance = std::numeric_limits<double>::infinity();
+  const auto consider_cell = [&](int i, int j, int k) {
+    const std::size_t key = order.key((i % nx + nx) % nx, (j % ny + ny) % ny, k);
+    for (std::uint32_t s = order.first(key); s < order.first(key + 1); ++s) {
+      const std::uint32_t q = order.order()[s];
+      if (q == p) continue;
+      double d[D];
+      separation<D>(grid_, store, p, q, d);
+      double distance = 0;
+      for (int a = 0; a < D; ++a) distance += d[a] * d[a];
+      if (distance < best_distance ||
+          (distance == best_distance && best != nobody && uid[q] < uid[best])) {
+        best_distance = distance;
+        best = q;
+      }
+    }
+  };
+  const int widest = std::max({nx, ny, nz}) + 1;
+  for (int radius = 1; best == nobody && radius <= widest; ++radius)
+    for (int j = D == 3 ? cj - radius : 0; j < (D == 3 ? cj + radius : 1); ++j)
+      for (int i = ci - radius; i < ci + radius; ++i)
+        for (int k = std::max(ck - radius, 0); k < std::min(ck + radius, nz); ++k)
+          consider_cell(i, j, k);
+  return best;
+}
+
+template <int D>
+void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* end) const {
+  constexpr double moment = D == 3 ? 5.0 : 4.0;  // second moment of the ellipsoid is B/(D + 2)
+  constexpr int shape_components = D == 3 ? 6 : 3;
+  const std::uint32_t r = begin->receiver;
+  const double* volume = store.volume();
+  double total = volume[r];
+  std::uint32_t largest = r;
+  for (const Source* s = begin; s != end; ++s) {
+    total += volume[s->source];
+    const std::uint64_t* uid = store.uid();
+    if (volume[s->source] > volume[largest] ||
+        (volume[s->source] == volume[largest] && uid[s->source] < uid[largest]))
+      largest = s->source;
+  }
+  const double inverse = 1.0 / total;
+
+  double centroid[D] = {};  // relative to the receiver
+  for (const Source* s = begin; s != end; ++s) {
+    double d[D];
+    separation<D>(grid_, store, r, s->source, d);
+    for (int a = 0; a < D; ++a) centroid[a] += volume[s->source] * inverse * d[a];
+  }
+  double shape[shape_components] = {};
+  const auto add_moment = [&](std::uint32_t p) {
+    double d[D];
+    separation<D>(grid_, store, r, p, d);
+    for (int a = 0; a < D; ++a) d[a] -= centroid[a];
+    const double mu = volume[p] * inverse;
+    int c = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b, ++c) shape[c] += mu * (store.shape(c)[p] + moment * d[a] * d[b]);
+  };
+  add_moment(r);
+  for (const Source* s = begin; s != end; ++s) add_moment(s->source);
+  double scale;
+  if constexpr (D == 3) {
+    const double abc = three_over_four_pi * total;
+    scale = std::cbrt(abc * abc /
+                      baseline::determinant(baseline::Symmetric3<double>{
+                          shape[0], shape[1], shape[2], shape[3], shape[4], shape[5]}));
+  } else {
+    const double ab = one_over_pi * total;
+    scale = ab / std::sqrt(baseline::determinant(
+                     baseline::Symmetric2<double>{shape[0], shape[1], shape[2]}));
+  }
+
+  const auto merge_mean = [&](double* value) {
+    double sum = volume[r] * value[r], low = value[r], high = value[r];
+    for (const Source* s = begin; s != end; ++s) {
+      const double v = value[s->source];
+      sum += volume[s->source] * v;
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+    // Rounding must not carry a mean past its parents.
+    value[r] = std::clamp(sum * inverse, low, high);
+  };
+  for (int c = 0; c < store.vorticity_components(); ++c) merge_mean(store.vorticity(c));
+  for (std::size_t i = 0; i < store.scalars().size(); ++i) {
+    double* value = store.scalar(static_cast<int>(i));
+    if (store.scalars()[i].nature == Nature::intensive) merge_mean(value);
+    if (store.scalars()[i].nature == Nature::extensive)
+      for (const Source* s = begin; s != end; ++s) value[r] += value[s->source];
+  }
+  for (int a = 0; a < D; ++a) store.position(a)[r] += centroid[a];
+  for (int a = 0; a < D - 1; ++a) {
+    double& x = store.position(a)[r];
+    x -= grid_.extent[a] * std::floor((x - grid_.lower[a]) / grid_.extent[a]);
+  }
+  for (int c = 0; c < shape_components; ++c) store.shape(c)[r] = scale * shape[c];
+  store.uid()[r] = store.uid()[largest];
+  store.volume()[r] = total;
+}
+
+template class Merge<2>;
+template class Merge<3>;
+
+}  // namespace pileus::parcels

@@ -1,0 +1,36 @@
+// Splitting parcels that have become too long or too large.
+#pragma once
+#include <cstddef>
+
+#include "mesh/grid.hpp"
+#include "parcels/store.hpp"
+
+namespace pileus::parcels {
+
+/// When a parcel splits. 3D: a/c ≥ max_aspect_ratio or a ≥ the radius of a sphere of the volume of
+/// the smallest cubic cell; 2D: a/b > max_aspect_ratio or area > largest_volume.
+template <int D>
+struct SplitCriterion {
+  double squared_aspect_ratio;  // of the longest to the shortest axis
+  double squared_longest;       // m2, 3D
+  double largest_volume;        // m2, 2D
+
+  static SplitCriterion make(const mesh::Grid<D>& grid, double max_aspect_ratio,
+                             double max_volume_ratio);
+  bool splits(double squared_length, double squared_ratio, double volume) const {
+    if constexpr (D == 3)
+      return squared_ratio >= squared_aspect_ratio || squared_length >= squared_longest;
+    else
+      return squared_ratio > squared_aspect_ratio || volume > largest_volume;
+  }
+};
+
+/// Turns two copies of one parcel, at `first` and `second`, into its two halves along the longest
+/// axis: half the volume and half that axis each, centres h apart on either side, so that volume,
+/// centroid and second moment are the parent's (h = √(3/5) a/2 in 3D, √3 a/4 in 2D; Frey et al.).
+/// `second` gets the identity of a child born in `step`. Halves beyond a wall are reflected.
+template <int D>
+void split_pair(Store& store, const mesh::Grid<D>& grid, std::size_t first, std::size_t second,
+                std::uint64_t step);
+
+}  // namespace pileus::parcels

@@ -1,0 +1,116 @@
+#include "parcels/upkeep.hpp"
+
+#include "base/parallel.hpp"
+#include "parcels/kernels.hpp"
+
+namespace pileus::parcels {
+
+template <int D>
+Upkeep<D>::Upkeep(const mesh::Grid<D>& grid, const Tiling<D>& tiling, double smallest_volume,
+                  const SplitCriterion<D>& criterion)
+    : grid_(grid),
+      tiling_(tiling),
+      order_(grid, tiling),
+      merge_(grid, smallest_volume),
+      criterion_(criterion),
+      tile_begin_(tiling.tiles().size() + 1, 0) {}
+
+template <int D>
+UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint64_t step,
+                            PhaseTimes& times) {
+  UpkeepCounts counts;
+  {
+    const PhaseScope scope(times, Phase::sort);
+    order_.sort(store);
+  }
+  {
+    const PhaseScope scope(times, Phase::merge);
+    counts.merges = merge_.run(store, order_);
+  }
+  {
+    const PhaseScope scope(times, Phase::split);
+    mark_splits(store, offsets);
+  }
+  {
+    const PhaseScope scope(times, Phase::sort);
+    list_survivors();
+    store.gather(source_);
+  }
+  {
+    const PhaseScope scope(times, Phase::split);
+    parallel_chunks(
+        pairs_.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i)
+            split_pair<D>(store, grid_, pairs_[i], pairs_[i] + 1, step);
+        },
+        256);
+    counts.splits = pairs_.size();
+  }
+  return counts;
+}
+
+template <int D>
+void Upkeep<D>::reorder(Store& store, PhaseTimes& times) {
+  const PhaseScope scope(times, Phase::sort);
+  order_.sort(store);
+  splits_.assign(store.size(), 0);
+  merge_.forget();
+  list_survivors();
+  store.gather(source_);
+}
+
+template <int D>
+void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
+  const std::size_t count = store.size();
+  splits_.resize(count);
+  if (scratch.capacity() < count + 8) scratch.resize(count);
+  double* length = scratch.scratch(0);
+  double* ratio = scratch.scratch(1);
+  const double* shape[D == 3 ? 6 : 3];
+  for (int c = 0; c < store.shape_components(); ++c) shape[c] = store.shape(c);
+  const double* volume = store.volume();
+  const auto measure = D == 3 ? kernels().axis_ratios_3d : kernels().axis_ratios_2d;
+  parallel_chunks(count, [&](std::size_t begin, std::size_t end) {
+    measure(shape, length, ratio, begin, end);
+    for (std::size_t p = begin; p < end; ++p)
+      splits_[p] = criterion_.splits(length[p], ratio[p], volume[p]);
+  });
+}
+
+/// Walks the cells in order: skips merged parcels, lists splitting ones twice.
+template <int D>
+void Upkeep<D>::list_survivors() {
+  const auto& gone = merge_.gone();
+  const bool any_gone = !gone.empty();
+  source_.clear();
+  source_.reserve(splits_.size() + splits_.size() / 8);
+  pairs_.clear();
+  const auto& tiles = tiling_.tiles();
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    tile_begin_[t] = source_.size();
+    const std::uint32_t last = order_.first(order_.key_of_rank(tiles[t].last_column_rank));
+    for (std::uint32_t s = order_.first(order_.key_of_rank(tiles[t].first_column_rank)); s < last;
+         ++s) {
+      const std::uint32_t p = order_.order()[s];
+      if (any_gone && gone[p]) continue;
+      if (splits_[p]) {
+        pairs_.push_back(source_.size());
+        source_.push_back(p);
+      }
+      source_.push_back(p);
+    }
+  }
+  tile_begin_[tiles.size()] = source_.size();
+}
+
+template <int D>
+std::size_t Upkeep<D>::allocated_bytes() const {
+  return order_.allocated_bytes() + splits_.capacity() + merge_.gone().capacity() +
+         source_.capacity() * sizeof(std::uint32_t) + pairs_.capacity() * sizeof(std::size_t);
+}
+
+template class Upkeep<2>;
+template class Upkeep<3>;
+
+}  // namespace pileus::parcels

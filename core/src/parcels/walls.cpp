@@ -1,0 +1,43 @@
+#include "parcels/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+
+namespace pileus::parcels {
+
+template <int D>
+void confine(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
+  for (int a = 0; a < D - 1; ++a) {
+    double& x = store.position(a)[p];
+    const double offset = x - grid.lower[a];
+    if (offset >= 0 && offset < grid.extent[a]) continue;
+    x = grid.lower[a] + (offset - grid.extent[a] * std::floor(offset / grid.extent[a]));
+    if (!(x < grid.lower[a] + grid.extent[a])) x = grid.lower[a];  // rounded up to the seam
+  }
+  double& z = store.position(D - 1)[p];
+  const double bottom = grid.bottom(), top = grid.top();
+  if (z >= bottom && z <= top) return;
+  z = std::clamp(z < bottom ? 2 * bottom - z : 2 * top - z, bottom, top);
+  if constexpr (D == 3) {
+    store.shape(2)[p] = -store.shape(2)[p];
+    store.shape(4)[p] = -store.shape(4)[p];
+  } else {
+    store.shape(1)[p] = -store.shape(1)[p];
+  }
+}
+
+template <int D>
+void confine(Store& store, const mesh::Grid<D>& grid) {
+  parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) confine<D>(store, grid, p);
+  });
+}
+
+template void confine<2>(Store&, const mesh::Grid<2>&);
+template void confine<3>(Store&, const mesh::Grid<3>&);
+template void confine<2>(Store&, const mesh::Grid<2>&, std::size_t);
+template void confine<3>(Store&, const mesh::Grid<3>&, std::size_t);
+
+}  // namespace pileus::parcels
