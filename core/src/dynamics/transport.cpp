@@ -1,0 +1,221 @@
+#include "dynamics/transport.hpp"
+
+#include "base/parallel.hpp"
+#include "parcels/walls.hpp"
+
+namespace pileus::dynamics {
+namespace {
+
+constexpr std::size_t read_ahead = 8;
+
+void run_stage(StageJob<3>& job) {
+  kernels().stage_3d(job);
+}
+void run_stage(StageJob<2>& job) {
+  kernels().stage_2d(job);
+}
+
+template <int D>
+using NetVorticity = std::array<double, StageJob<D>::vorticity_components>;
+
+/// Volume-weighted mean vorticity of the parcels.
+template <int D>
+NetVorticity<D> mean_vorticity(const parcels::Store& store, double domain_volume) {
+  constexpr std::size_t components = StageJob<D>::vorticity_components;
+  NetVorticity<D> sum = ordered_reduce(
+      store.size(), NetVorticity<D>{},
+      [&](std::size_t begin, std::size_t end) {
+        NetVorticity<D> partial{};
+        const double* volume = store.volume();
+        for (std::size_t c = 0; c < components; ++c) {
+          const double* omega = store.vorticity(static_cast<int>(c));
+          double total = 0;
+          for (std::size_t p = begin; p < end; ++p) total += volume[p] * omega[p];
+          partial[c] = total;
+        }
+        return partial;
+      },
+      [](NetVorticity<D> a, const NetVorticity<D>& b) {
+        for (std::size_t c = 0; c < components; ++c) a[c] += b[c];
+        return a;
+      });
+  for (double& s : sum) s /= domain_volume;
+  return sum;
+}
+
+}  // namespace
+
+template <int D>
+Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
+                        const LowStorageScheme& scheme, ShapeIntegrator shape,
+                        ReferenceProfile reference)
+    : grid_(grid),
+      coriolis_(coriolis),
+      scheme_(scheme),
+      shape_(shape),
+      reference_(std::move(reference)),
+      deposit_(grid),
+      solver_(grid, flow),
+      deposited_(grid.nodes() * mesh::DepositRecord<D>::width),
+      flow_(grid.nodes() * mesh::FlowRecord<D>::width) {}
+
+template <int D>
+void Transport<D>::reserve(std::size_t parcels) {
+  if (position_increment_[0].size() >= parcels + read_ahead) return;
+  // Room for growth, so that the parcel count may vary for many steps without an allocation.
+  const std::size_t room = parcels + parcels / 16 + read_ahead;
+  for (auto& a : position_increment_) a.discard_and_resize(room);
+  for (auto& a : vorticity_increment_) a.discard_and_resize(room);
+  const std::size_t used = shape_ == ShapeIntegrator::exponential
+                               ? shape_increment_.size()
+                               : std::size_t(StageJob<D>::shape_components);
+  for (std::size_t c = 0; c < used; ++c) shape_increment_[c].discard_and_resize(room);
+  if (!reference_.is_zero()) perturbation_.discard_and_resize(room);
+}
+
+template <int D>
+const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancySource& source,
+                                                const std::vector<std::size_t>& tile_begin,
+                                                const MeanWind& wind, double time,
+                                                PhaseTimes& times) {
+  reserve(store.size());
+  const double* buoyancy;
+  {
+    const PhaseScope scope(times, Phase::closure);
+    buoyancy = source.buoyancy(store, time);
+    if (!reference_.is_zero()) {
+      const double* z = store.position(D - 1);
+      parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) perturbation_[p] = buoyancy[p] - reference_(z[p]);
+      });
+      buoyancy = perturbation_.data();
+    }
+  }
+  {
+    const PhaseScope scope(times, Phase::deposit);
+    offsets_.update(store);
+    std::vector<const double*>& values = deposit_values_;
+    values.clear();
+    for (int c = 0; c < store.vorticity_components(); ++c) values.push_back(store.vorticity(c));
+    values.push_back(buoyancy);
+    empty_nodes_ = deposit_.means(store, offsets_, tile_begin, values, deposited_.data());
+  }
+  solver_.solve(deposited_.data(), wind.velocity, flow_.data(), &summary_, times);
+  return summary_;
+}
+
+template <int D>
+void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, double dt,
+                         bool evaluate_only, PhaseTimes& times) {
+  const PhaseScope scope(times, Phase::interpolate);
+  StageJob<D> whole{};
+  whole.grid = parcels::make_kernel_grid(grid_);
+  whole.flow = flow_.data();
+  for (int c = 0; c < parcels::SupportOffsets<D>::components; ++c)
+    whole.offset[c] = offsets_.component(c);
+  for (int d = 0; d < D; ++d) {
+    whole.position[d] = store.position(d);
+    whole.position_increment[d] = position_increment_[static_cast<std::size_t>(d)].data();
+  }
+  for (int c = 0; c < StageJob<D>::vorticity_components; ++c) {
+    whole.vorticity[c] = store.vorticity(c);
+    whole.vorticity_increment[c] = vorticity_increment_[static_cast<std::size_t>(c)].data();
+  }
+  for (int c = 0; c < StageJob<D>::shape_components; ++c) whole.shape[c] = store.shape(c);
+  for (int c = 0; c < StageJob<D>::gradient_components; ++c)
+    whole.shape_increment[c] = shape_increment_[static_cast<std::size_t>(c)].data();
+  whole.volume = store.volume();
+  whole.keep = scheme_.a[s];
+  whole.advance = evaluate_only ? 0.0 : scheme_.b[s] * dt;
+  whole.first = s == 0;
+  whole.last = s + 1 == scheme_.stages();
+  whole.evaluate_only = evaluate_only;
+  whole.shape_integrator = shape_;
+  broken_shapes_ += ordered_reduce(
+      store.size(), std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        StageJob<D> job = whole;
+        job.begin = begin;
+        job.end = end;
+        job.broken = 0;
+        run_stage(job);
+        return job.broken;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
+  if (evaluate_only) return;
+
+  // The domain-mean wind turns inertially, d⟨u⟩/dt = f⟨v⟩, d⟨v⟩/dt = −f⟨u⟩ (3D).
+  const std::array<double, 2> u = wind.velocity;
+  const std::array<double, 2> rate{D == 3 ? coriolis_ * u[1] : 0.0,
+                                   D == 3 ? -coriolis_ * u[0] : 0.0};
+  for (std::size_t d = 0; d < 2; ++d) {
+    wind.increment[d] = (s == 0 ? 0.0 : scheme_.a[s] * wind.increment[d]) + rate[d];
+    wind.velocity[d] += scheme_.b[s] * dt * wind.increment[d];
+  }
+  // The change of the net vorticity that the walls and rotation call for, with the same scheme.
+  for (std::size_t c = 0; c < net_vorticity_.size(); ++c) {
+    const double due = D == 3 && c < 2 ? summary_.net_vorticity_rate[c] : 0.0;
+    net_vorticity_increment_[c] = (s == 0 ? 0.0 : scheme_.a[s] * net_vorticity_increment_[c]) + due;
+    net_vorticity_change_[c] += scheme_.b[s] * dt * net_vorticity_increment_[c];
+  }
+}
+
+template <int D>
+void Transport<D>::begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) {
+  {
+    const PhaseScope scope(times, Phase::stage_update);
+    net_vorticity_ = mean_vorticity<D>(store, grid_.domain_volume());
+    net_vorticity_change_ = {};
+  }
+  stage(store, wind, 0, dt, false, times);
+}
+
+template <int D>
+void Transport<D>::finish_step(parcels::Store& store, BuoyancySource& source,
+                               const std::vector<std::size_t>& tile_begin, MeanWind& wind,
+                               double time, double dt, PhaseTimes& times) {
+  for (std::size_t s = 1; s < scheme_.stages(); ++s) {
+    evaluate(store, source, tile_begin, wind, time + scheme_.c[s] * dt, times);
+    stage(store, wind, s, dt, false, times);
+  }
+  const PhaseScope scope(times, Phase::stage_update);
+  parcels::confine<D>(store, grid_);
+  settle_net_vorticity(store);
+}
+
+/// The parcels' mean vorticity differs from its exact budget by the discretisation of the stages;
+/// the difference is taken from all parcels alike.
+template <int D>
+void Transport<D>::settle_net_vorticity(parcels::Store& store) {
+  NetVorticity<D> excess = mean_vorticity<D>(store, grid_.domain_volume());
+  for (std::size_t c = 0; c < excess.size(); ++c)
+    excess[c] -= net_vorticity_[c] + net_vorticity_change_[c];
+  parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = 0; c < excess.size(); ++c) {
+      double* omega = store.vorticity(static_cast<int>(c));
+      for (std::size_t p = begin; p < end; ++p) omega[p] -= excess[c];
+    }
+  });
+}
+
+template <int D>
+void Transport<D>::probe(parcels::Store& store, PhaseTimes& times) {
+  MeanWind unused;
+  stage(store, unused, 0, 0.0, true, times);
+}
+
+template <int D>
+std::size_t Transport<D>::allocated_bytes() const {
+  std::size_t bytes = deposited_.allocated_bytes() + flow_.allocated_bytes() +
+                      perturbation_.allocated_bytes() + offsets_.allocated_bytes() +
+                      deposit_.allocated_bytes();
+  for (const auto& a : position_increment_) bytes += a.allocated_bytes();
+  for (const auto& a : vorticity_increment_) bytes += a.allocated_bytes();
+  for (const auto& a : shape_increment_) bytes += a.allocated_bytes();
+  return bytes;
+}
+
+template class Transport<2>;
+template class Transport<3>;
+
+}  // namespace pileus::dynamics
