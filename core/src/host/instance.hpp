@@ -1,0 +1,66 @@
+// One configured operator: its life, and every call into its library.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/lifecycle.hpp"
+#include "host/operator_table.hpp"
+#include "host/parameter_values.hpp"
+#include "host/services.hpp"
+
+namespace pileus::host {
+
+/// Outcome of a call: a status of pileus/abi.h and its record.
+struct CallResult {
+  pileus_status status = PILEUS_OK;
+  pileus_error error{};
+  bool ok() const { return status == PILEUS_OK; }
+};
+
+/// "diverged", "out of memory", … for a status other than OK.
+const char* describe_status(pileus_status status);
+
+/// An operator instance. Every call leaves a breadcrumb, catches what a library lets escape,
+/// checks the lifecycle and the floating-point mode. diagnose and apply may be called by many
+/// threads at once with disjoint blocks.
+class Instance {
+ public:
+  /// Creates the instance. `stop` answers the plugin's should_stop and may be null.
+  /// Errors  Error(ExitCode::plugin) if create fails
+  Instance(std::shared_ptr<const OperatorTable> table, const std::atomic<bool>* stop);
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  const OperatorTable& table() const { return *table_; }
+  LifeState state() const { return state_; }
+  std::vector<Span> spans() const { return services_.spans(); }
+
+  /// Hands over the parameters. Errors  Error(ExitCode::plugin) with the plugin's own sentence
+  void configure(ParameterValues& values);
+
+  /// Starts a new run; operators without the hook are ready at once.
+  CallResult init(const pileus_step& step, const pileus_block& whole);
+  /// Starts from a checkpoint.
+  void resume();
+  CallResult prepare(const pileus_step& step, const pileus_block& whole, double& dt_limit);
+  CallResult diagnose(const pileus_step& step, const pileus_block& block,
+                      std::int64_t block_index) const;
+  CallResult apply(const pileus_step& step, const pileus_block& block,
+                   std::int64_t block_index) const;
+
+ private:
+  template <class Hook>
+  CallResult call(LifeCall which, std::uint64_t step, std::int64_t block, Hook&& hook) const;
+  [[noreturn]] void refuse(const char* phase, const CallResult& result) const;
+
+  std::shared_ptr<const OperatorTable> table_;
+  Services services_;
+  void* self_ = nullptr;
+  LifeState state_ = LifeState::none;
+};
+
+}  // namespace pileus::host

@@ -1,0 +1,52 @@
+// An operator's declarations, checked and copied out of the library's tables.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pileus/abi.h"
+
+namespace pileus::host {
+
+/// One comparison of a `when`: a parameter against a literal.
+struct WhenTerm {
+  std::uint32_t parameter;  // index
+  bool equal;               // ==, else !=
+  double value;             // the literal as pileus_values.number holds it
+};
+/// All terms must hold; no term: always.
+using When = std::vector<WhenTerm>;
+
+/// The tables of one operator. Rows are full-length copies: members that an older plugin's rows do
+/// not reach are zero. The texts they point to live in the library, which is never unloaded.
+struct OperatorTable {
+  pileus_operator op{};
+  std::vector<pileus_reference> references;
+  std::vector<pileus_quantity> quantities;
+  std::vector<pileus_parameter> parameters;
+  std::vector<pileus_effect> effects;
+  std::vector<pileus_condition> active_if;
+  std::vector<std::string> budgets;
+  std::vector<When> quantity_when, parameter_when, effect_when;  // one per row
+
+  std::string library;  // path of the file
+  std::string module;   // from the note
+  std::string module_version;
+  std::string toolchain;
+
+  /// Index of a parameter or of a parcel quantity, or −1.
+  int find_parameter(std::string_view name) const;
+  int find_quantity(std::string_view name) const;
+};
+
+/// True if all terms hold for the given parameter numbers.
+bool holds(const When& when, const double* numbers);
+
+/// Checks every row of an operator's tables and copies them.
+///
+/// Each mistake is added to `complaints` as one sentence; the result is only meaningful when none
+/// was added. Pointers to readable memory are assumed; everything else may be wrong.
+OperatorTable read_operator(const pileus_operator* row, std::vector<std::string>& complaints);
+
+}  // namespace pileus::host

@@ -1,0 +1,174 @@
+#include "host/services.hpp"
+
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "base/aligned_array.hpp"
+#include "base/log.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+
+namespace pileus::host {
+namespace {
+
+/// Memory of one thread that lives until the call returns. Chunks do not move while in use; after
+/// a call that needed several they are joined, so that steady use is one chunk and no allocation.
+class ScratchArena {
+ public:
+  void* take(std::size_t bytes) {
+    const std::size_t padded = (bytes + cache_line_bytes - 1) / cache_line_bytes * cache_line_bytes;
+    if (chunks_.empty() || chunks_.back().size() - used_ < padded) {
+      chunks_.emplace_back(padded < smallest ? smallest : padded);
+      used_ = 0;
+    }
+    void* memory = chunks_.back().data() + used_;
+    used_ += padded;
+    return memory;
+  }
+  void release() {
+    used_ = 0;
+    if (chunks_.size() < 2) return;
+    std::size_t total = 0;
+    for (const auto& chunk : chunks_) total += chunk.size();
+    chunks_.clear();
+    chunks_.emplace_back(total);
+  }
+
+ private:
+  static constexpr std::size_t smallest = 65536;
+  std::vector<AlignedArray<std::byte>> chunks_;
+  std::size_t used_ = 0;
+};
+
+thread_local ScratchArena arena;
+
+void* take_scratch(const pileus_host*, std::size_t bytes) {
+  if (bytes == 0 || bytes > std::numeric_limits<std::size_t>::max() / 2) return nullptr;
+  try {
+    return arena.take(bytes);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+void give_uniform(const pileus_host*, const pileus_step* step, std::uint64_t uid,
+                  std::uint32_t channel, std::uint32_t n, double* out) {
+  draw_random({step->seed, step->stream, uid, step->number, step->call, channel}, {out, n});
+}
+
+/// A rejected chunk on its way to the plugin that started the loop.
+struct ChunkFailure {
+  pileus_status status;
+  pileus_error error;
+};
+
+pileus_status loop_in_parallel(const pileus_host*, std::int64_t n, std::int64_t grain,
+                               pileus_range_fn body, void* user, pileus_error* error) {
+  if (n <= 0) return PILEUS_OK;
+  const auto chunk = static_cast<std::size_t>(grain > 0 ? grain : 1);
+  try {
+    parallel_chunks(
+        static_cast<std::size_t>(n),
+        [&](std::size_t begin, std::size_t end) {
+          ChunkFailure failure{PILEUS_OK, {}};
+          failure.error.size = sizeof(pileus_error);
+          failure.error.slot = -1;
+          failure.status = body(user, static_cast<std::int64_t>(begin),
+                                static_cast<std::int64_t>(end), &failure.error);
+          if (failure.status != PILEUS_OK) throw failure;
+        },
+        chunk);
+    return PILEUS_OK;
+  } catch (const ChunkFailure& failure) {
+    if (error != nullptr) *error = failure.error;
+    return failure.status;
+  } catch (...) {
+    return PILEUS_E_INTERNAL;
+  }
+}
+
+const void* find_extension(const pileus_host*, const char*) {
+  return nullptr;
+}
+
+std::uint64_t now_ns() {
+  const auto since = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(since).count());
+}
+
+}  // namespace
+
+Services::Services(std::string operator_id, const std::atomic<bool>* stop)
+    : id_(std::move(operator_id)), stop_(stop) {
+  table_.size = sizeof table_;
+  table_.abi_minor = PILEUS_ABI_MINOR;
+  table_.impl = this;
+  table_.log = write_log;
+  table_.should_stop = answer_should_stop;
+  table_.scratch = take_scratch;
+  table_.uniform = give_uniform;
+  table_.parallel_for = loop_in_parallel;
+  table_.span_begin = begin_span;
+  table_.span_end = end_span;
+  table_.extension = find_extension;
+}
+
+void Services::write_log(const pileus_host* host, std::uint32_t level, const char* text) {
+  constexpr std::array<LogLevel, 4> levels = {LogLevel::debug, LogLevel::info, LogLevel::warning,
+                                              LogLevel::error};
+  log(levels[level < levels.size() ? level : levels.size() - 1],
+      self(host).id_ + ": " + (text != nullptr ? text : ""));
+}
+
+int Services::answer_should_stop(const pileus_host* host) {
+  const std::atomic<bool>* stop = self(host).stop_;
+  return stop != nullptr && stop->load(std::memory_order_relaxed) ? 1 : 0;
+}
+
+// A token is the time in nanoseconds with its top four bits replaced by the timer's number; 2^60 ns
+// are 36 years, and differences are taken modulo that.
+std::uint64_t Services::begin_span(const pileus_host* host, const char* name) {
+  if (name == nullptr) return 0;
+  const Services& me = self(host);
+  std::size_t index = 0;
+  const auto find = [&] {
+    const std::size_t count = me.timer_count_.load(std::memory_order_acquire);
+    while (index < count && std::strncmp(me.timers_[index].name, name, 39) != 0) ++index;
+    return index < count;
+  };
+  if (!find()) {
+    const std::lock_guard lock(me.adding_timer_);
+    if (!find()) {
+      if (index == most_timers) return 0;
+      std::strncpy(me.timers_[index].name, name, 39);
+      me.timer_count_.store(index + 1, std::memory_order_release);
+    }
+  }
+  return std::uint64_t{index + 1} << 60 | (now_ns() << 4 >> 4);
+}
+
+void Services::end_span(const pileus_host* host, std::uint64_t token) {
+  const std::uint64_t index = token >> 60;
+  if (index == 0) return;
+  Timer& timer = self(host).timers_[index - 1];
+  timer.calls.fetch_add(1, std::memory_order_relaxed);
+  timer.nanoseconds.fetch_add((now_ns() - token) << 4 >> 4, std::memory_order_relaxed);
+}
+
+std::vector<Span> Services::spans() const {
+  std::vector<Span> all;
+  for (std::size_t i = 0; i < timer_count_.load(std::memory_order_acquire); ++i) {
+    all.push_back({timers_[i].name, timers_[i].calls.load(),
+                   static_cast<double>(timers_[i].nanoseconds.load()) * 1e-9});
+  }
+  return all;
+}
+
+void release_scratch() {
+  arena.release();
+}
+
+}  // namespace pileus::host

@@ -1,0 +1,59 @@
+// What the host lends to an operator instance: log, memory, random numbers, loops, timers.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "pileus/abi.h"
+
+namespace pileus::host {
+
+/// Total of a named timer.
+struct Span {
+  std::string name;
+  std::uint64_t calls = 0;
+  double seconds = 0;  // summed over threads
+};
+
+/// The service table of one instance. Does not move: the plugin keeps its address.
+class Services {
+ public:
+  /// `operator_id` prefixes log records; `stop`, if any, answers should_stop.
+  Services(std::string operator_id, const std::atomic<bool>* stop);
+  Services(const Services&) = delete;
+  Services& operator=(const Services&) = delete;
+
+  const pileus_host& table() const { return table_; }
+  std::vector<Span> spans() const;
+
+ private:
+  static const Services& self(const pileus_host* host) {
+    return *static_cast<const Services*>(host->impl);
+  }
+  static void write_log(const pileus_host*, std::uint32_t level, const char* text);
+  static int answer_should_stop(const pileus_host*);
+  static std::uint64_t begin_span(const pileus_host*, const char* name);
+  static void end_span(const pileus_host*, std::uint64_t token);
+
+  struct Timer {
+    char name[40] = {};
+    std::atomic<std::uint64_t> calls = 0, nanoseconds = 0;
+  };
+  static constexpr std::size_t most_timers = 15;  // an index of four bits, 0 meaning none
+
+  std::string id_;
+  const std::atomic<bool>* stop_;
+  pileus_host table_{};
+  mutable std::array<Timer, most_timers> timers_;
+  mutable std::atomic<std::size_t> timer_count_ = 0;
+  mutable std::mutex adding_timer_;
+};
+
+/// Gives back all scratch memory of this thread; called before each outermost call into a plugin.
+void release_scratch();
+
+}  // namespace pileus::host
