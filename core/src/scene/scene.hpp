@@ -167,6 +167,47 @@ struct OutputControl {
   int checkpoints_kept = 2;
 };
 
+/// Choices of the numerical method; each trades accuracy for time.
+struct NumericsControl {
+  enum class ShapeIntegrator { exponential, runge_kutta };
+  enum class VerticalDerivative { compact, centred };
+  ShapeIntegrator shape_integrator = ShapeIntegrator::exponential;
+  VerticalDerivative vertical_derivative = VerticalDerivative::compact;
+  bool spectral_filter = true;  // Hou–Li filter on the gridded vorticity
+};
+
+/// A known solution that a gridded field is compared with. Gives the diagnostics
+/// `<variable>_rms_error` (r.m.s. difference over r.m.s. of the exact field, 1) and, with a
+/// frequency, `<variable>_phase_error` (rad) and `<variable>_frequency_error` (1, relative).
+struct ExactSolution {
+  std::string variable;  // gridded field, e.g. upward_component_of_vorticity as written to files
+  std::string formula;   // of x, y, z, t and the scene's constants
+  double frequency = 0;  // s-1; 0: no phase is measured
+  Location where;
+};
+
+/// Volume-weighted histogram of a parcel quantity over equal bins, with published ones to compare.
+/// Gives `<name>_mode`, `<name>_highest` (upper edge of the last non-empty bin) and
+/// `<name>_distance_<label>` (r.m.s. difference of densities over the bins above the first).
+struct HistogramControl {
+  struct Reference {
+    std::string label, path, column;  // of a CSV file with a header row, one row per bin
+    Location where;
+  };
+  std::string name, variable;
+  double unit = 1;  // the quantity is divided by this before binning
+  double low = 0, high = 1;
+  int bins = 50;
+  std::vector<Reference> references;
+  Location where;
+};
+
+struct DiagnosticControl {
+  double cloud_threshold = 1e-6;  // 1; liquid water mass fraction from which air counts as cloudy
+  std::vector<ExactSolution> exact;
+  std::vector<HistogramControl> histograms;
+};
+
 struct Expectation {
   std::string diagnostic;    // name in summary.json:diagnostics
   std::string statistic;     // initial final min max mean relative_change …
@@ -191,6 +232,8 @@ struct Scene {
   Coupling coupling;
   EffectRequests effects;
   EnergyControl energy;
+  NumericsControl numerics;
+  DiagnosticControl diagnostics;
   OutputControl output;
   std::vector<Expectation> expect;
   std::uint64_t seed = 0;
