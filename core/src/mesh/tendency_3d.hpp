@@ -1,0 +1,51 @@
+// Vorticity tendency in flux form, 3D.
+#pragma once
+#include "mesh/flow_options.hpp"
+#include "mesh/grid.hpp"
+#include "mesh/line_transform.hpp"
+#include "mesh/thread_scratch.hpp"
+
+namespace pileus::mesh {
+
+/// Material tendency of the vorticity on the nodes (Frey, Dritschel & Böing 2023, eq. 8 rewritten
+/// with ∇·ω = 0): Dω_i/Dt = ∇·((ω + f) u_i) + buoyancy terms, that is
+///   Dξ/Dt = ∂x[(ξ+f_x)u]     + ∂y[(η+f_y)u + b] + ∂z[(ζ+f_z)u]
+///   Dη/Dt = ∂x[(ξ+f_x)v − b] + ∂y[(η+f_y)v]     + ∂z[(ζ+f_z)v]
+///   Dζ/Dt = ∂x[(ξ+f_x)w]     + ∂y[(η+f_y)w]     + ∂z[(ζ+f_z)w].
+///
+/// Horizontal derivatives are spectral, so that their sum over a level vanishes to round-off; the
+/// vertical one is FlowOptions::vertical_derivative. Weighted over the levels with that
+/// derivative's quadrature (derivative_quadrature: the trapezoidal rule for the centred one), the
+/// sum of the tendency of ξ and η over all nodes therefore equals FlowSummary::net_vorticity_rate
+/// to round-off, and that of ζ vanishes, whatever the fields; where the tendency of ζ is zeroed on
+/// a wall only the former holds. With other weights (parcel volumes) both hold to truncation.
+class Tendency3D {
+ public:
+  Tendency3D(const Grid<3>& grid, const FlowOptions& options);
+
+  /// Fills the tendency of the flow records at all levels from their velocity and gradient and
+  /// from the deposited buoyancy.
+  void solve(const double* deposited, double* flow, FlowSummary* summary);
+
+  std::size_t allocated_bytes() const;
+
+ private:
+  void finish_rows(const double* deposited, double* flow, int j, FlowSummary* summary);
+  void finish_strip(int i, double* flow);
+  void flux_columns(const double* deposit, const double* flow, double* x_flux, double* y_flux,
+                    double* z_flux) const;
+  double largest_buoyancy_gradient(const double* deposited, int i, int j) const;
+
+  Grid<3> grid_;
+  FlowOptions options_;
+  int levels_;
+  ColumnMatrix derivative_;
+  LineTransform x_, y_;
+  std::vector<double> k_, l_;    // rad/m over the number of points
+  AlignedArray<double> y_flux_;  // [j][i][3][levels]
+  AlignedArray<double> stratification_;
+  std::vector<FlowSummary> row_summary_;
+  ThreadScratch scratch_;
+};
+
+}  // namespace pileus::mesh
