@@ -1,6 +1,7 @@
 // A validated scene: what the YAML file said, in SI units, every default filled in.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,8 +25,10 @@ struct Profile {
 /// Uniform noise, one draw per grid cell (all parcels of a cell get the same value), inside a
 /// layer.
 struct Noise {
-  double amplitude = 0;        // SI; uniform in ±amplitude
-  double bottom = 0, top = 0;  // m
+  double amplitude = 0;  // SI; uniform in ±amplitude
+  // m; infinite: everywhere
+  double bottom = -std::numeric_limits<double>::infinity();
+  double top = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
 };
 
@@ -37,6 +40,7 @@ struct FieldDescription {
   std::string formula;  // muParser text in x, y, z (m) and the scene's constants
   Profile profile;
   std::string path, variable;  // gridded data in HDF5/netCDF, trilinear between its nodes
+  std::string file_units;      // of the gridded data; empty: as its attribute says, else `units`
   std::optional<Noise> noise;
   std::string units;  // expected UDUNITS of the value
   Location where;

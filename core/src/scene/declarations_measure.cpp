@@ -1,0 +1,145 @@
+// The declared keys of numerics and of what is measured: exact solutions and histograms.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "scene/declarations.hpp"
+#include "scene/reader.hpp"
+
+namespace pileus::scene {
+namespace {
+
+void check_exact(Reader& reader, const Node& node, void* object) {
+  static_cast<ExactSolution*>(object)->where = node.where;
+  const Entry* formula = node.find("formula");
+  if (formula != nullptr && formula->value.kind == Node::Kind::scalar)
+    reader.formula(formula->value, {"x", "y", "z", "t"});
+}
+
+/// Tables of published numbers lie beside the scene that cites them.
+void check_reference(Reader& reader, const Node& node, void* object) {
+  auto& reference = *static_cast<HistogramControl::Reference*>(object);
+  reference.where = node.where;
+  const Entry* file = node.find("file");
+  if (file == nullptr || file->value.kind != Node::Kind::scalar) return;
+  const std::string& beside =
+      file->value.where.line > 0 ? file->value.where.file : reader.scene().path;
+  const std::filesystem::path full = std::filesystem::path(beside).parent_path() / reference.path;
+  if (!std::filesystem::exists(full))
+    reader.problem(file->value,
+                   fmt::format("there is no file '{}' (looked for '{}')", reference.path,
+                               std::filesystem::absolute(full).lexically_normal().string()));
+  reference.path = std::filesystem::absolute(full).lexically_normal().string();
+}
+
+void check_histogram(Reader& reader, const Node& node, void* object) {
+  auto& histogram = *static_cast<HistogramControl*>(object);
+  histogram.where = node.where;
+  if (!(histogram.low < histogram.high))
+    reader.problems().add(node.where,
+                          fmt::format("a histogram needs 'low' below 'high', found {} "
+                                      "and {}",
+                                      shortest(histogram.low), shortest(histogram.high)));
+}
+
+const Table& exact_table() {
+  static const Table table = {
+      .path = "diagnostics.exact",
+      .doc =
+          "Known solutions; each gives <variable>_rms_error and, with a frequency, "
+          "<variable>_phase_error and <variable>_frequency_error.",
+      .keys = {value("variable", &ExactSolution::variable, "1", "Gridded field that is compared.")
+                   .must(),
+               value("formula", &ExactSolution::formula, "1",
+                     "The exact field in SI, of x, y, z (m), t (s) and constants.")
+                   .must(),
+               value("frequency", &ExactSolution::frequency, "s-1",
+                     "Angular frequency of a wave whose phase is measured; 0 for none.")
+                   .at_least(0)},
+      .other = {},
+      .finish = check_exact,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& reference_table() {
+  using Reference = HistogramControl::Reference;
+  static const Table table = {
+      .path = "diagnostics.histograms.references",
+      .doc = "Published histograms to compare with; each gives <name>_distance_<label>.",
+      .keys = {value("label", &Reference::label, "1", "Name of the published result.").must(),
+               value("file", &Reference::path, "1",
+                     "CSV file with a header row and one row per bin, relative to the scene.")
+                   .must(),
+               value("column", &Reference::column, "1", "Column with the densities.").must()},
+      .other = {},
+      .finish = check_reference,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& histogram_table() {
+  static const Table table = {
+      .path = "diagnostics.histograms",
+      .doc =
+          "Volume-weighted histograms of parcel quantities; each gives <name>_mode and "
+          "<name>_highest.",
+      .keys =
+          {value("name", &HistogramControl::name, "1", "Prefix of the diagnostics.").must(),
+           value("variable", &HistogramControl::variable, "1", "Quantity of the parcels.").must(),
+           value("unit", &HistogramControl::unit, "1",
+                 "The quantity is divided by this number before binning.")
+               .above(0),
+           value("low", &HistogramControl::low, "1", "Lower edge of the first bin."),
+           value("high", &HistogramControl::high, "1", "Upper edge of the last bin."),
+           value("bins", &HistogramControl::bins, "1", "Number of equal bins.")
+               .at_least(1)
+               .at_most(100000),
+           sections("references", &HistogramControl::references, reference_table())},
+      .other = {},
+      .finish = check_histogram,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+}  // namespace
+
+const Table& numerics_table() {
+  static const Table table = {
+      .path = "numerics",
+      .doc = "Choices of the numerical method; each trades accuracy for time.",
+      .keys = {choice("shape_integrator", &NumericsControl::shape_integrator,
+                      {"exponential", "runge_kutta"},
+                      "How the parcels' ellipsoids deform: by the matrix exponential, exact in "
+                      "volume, or by the Runge-Kutta scheme."),
+               choice("vertical_derivative", &NumericsControl::vertical_derivative,
+                      {"compact", "centred"}, "Difference scheme of vertical derivatives."),
+               value("spectral_filter", &NumericsControl::spectral_filter, "1",
+                     "Hou-Li filter on the gridded vorticity.")},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& diagnostics_table() {
+  static const Table table = {
+      .path = "diagnostics",
+      .doc = "What is measured beyond the standard diagnostics, and definitions those leave open.",
+      .keys = {value("cloud_threshold", &DiagnosticControl::cloud_threshold, "1",
+                     "Cloud liquid water mass fraction above which air counts as cloud.")
+                   .at_least(0),
+               sections("exact", &DiagnosticControl::exact, exact_table()),
+               sections("histograms", &DiagnosticControl::histograms, histogram_table())},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+}  // namespace pileus::scene

@@ -1,0 +1,337 @@
+// The declared keys of what runs and what comes out: operators, coupling, effects, output, expect.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/nearest_word.hpp"
+#include "scene/declarations.hpp"
+#include "scene/reader.hpp"
+
+namespace pileus::scene {
+namespace {
+
+const std::vector<std::string> effect_modes = {"off", "on", "watch"};
+
+RawValue raw_value(Reader& reader, const Entry& entry) {
+  RawValue raw;
+  raw.where = entry.value.where;
+  raw.key_where = entry.where;
+  raw.text = entry.value.text;
+  raw.is_list = entry.value.kind == Node::Kind::list;
+  bool scalars = entry.value.kind == Node::Kind::scalar || raw.is_list;
+  for (const Node& item : entry.value.items) {
+    scalars = scalars && item.kind == Node::Kind::scalar;
+    raw.list.push_back(item.text);
+  }
+  if (!scalars)
+    reader.problem(entry.value,
+                   fmt::format("the parameter '{}' expects a value or a list of values, found {}",
+                               entry.key, describe(entry.value)));
+  return raw;
+}
+
+bool read_parameter(Reader& reader, const Entry& entry, void* object) {
+  static_cast<OperatorBlock*>(object)->parameters.emplace_back(entry.key, raw_value(reader, entry));
+  return true;
+}
+
+void complete_operator(Reader& reader, const Node& node, void* object) {
+  auto& block = *static_cast<OperatorBlock*>(object);
+  block.where = node.where;
+  if (block.name.empty()) block.name = operator_label(node);
+  for (const OperatorBlock& other : reader.scene().operators)
+    if (&other != &block && other.name == block.name && !block.name.empty())
+      reader.problems().add(
+          {node.where, fmt::format("two operators are called '{}'; give one a 'name'", block.name),
+           1, other.where, "the other one is here"});
+}
+
+Json raw_to_json(const RawValue& raw) {
+  if (!raw.is_list) return raw.text;
+  Json list = Json::array();
+  for (const std::string& item : raw.list) list.push_back(item);
+  return list;
+}
+
+int effect_mode(Reader& reader, const Node& node) {
+  if (node.kind == Node::Kind::scalar && node.text == "watch") return 2;
+  if (const auto state =
+          node.kind == Node::Kind::scalar ? read_switch(node.text) : std::optional<bool>())
+    return *state ? 1 : 0;
+  reader.problem(node,
+                 fmt::format("an effect is 'on', 'off' or 'watch', found {}", describe(node)));
+  return -1;
+}
+
+void read_effects(Reader& reader, const Entry& entry, void* object) {
+  auto& effects = static_cast<Scene*>(object)->effects;
+  const Node& node = entry.value;
+  if (node.kind == Node::Kind::scalar && node.text == "auto") return;
+  if (node.kind == Node::Kind::list) {
+    effects.form = EffectRequests::Form::list;
+    for (const Node& item : node.items) {
+      std::string name;
+      if (reader.text(item, "effects", name))
+        effects.requests.push_back({name, EffectRequests::Mode::on, item.where});
+    }
+  } else if (node.kind == Node::Kind::mapping) {
+    effects.form = EffectRequests::Form::map;
+    for (const Entry& effect : node.entries)
+      if (const int mode = effect_mode(reader, effect.value); mode >= 0)
+        effects.requests.push_back(
+            {effect.key, static_cast<EffectRequests::Mode>(mode), effect.where});
+  } else {
+    reader.problem(node, fmt::format("'effects' is 'auto', a list of effects, or a mapping of each "
+                                     "to on, off or watch; found {}",
+                                     describe(node)));
+  }
+}
+
+Json write_effects(const void* object) {
+  const auto& effects = static_cast<const Scene*>(object)->effects;
+  if (effects.form == EffectRequests::Form::automatic) return "auto";
+  Json all = effects.form == EffectRequests::Form::list ? Json::array() : Json::object();
+  for (const EffectRequests::Request& request : effects.requests) {
+    if (effects.form == EffectRequests::Form::list)
+      all.push_back(request.name);
+    else
+      all[request.name] = effect_modes[static_cast<std::size_t>(request.mode)];
+  }
+  return all;
+}
+
+void check_expectation(Reader& reader, const Node& node, void* object) {
+  auto& expectation = *static_cast<Expectation*>(object);
+  expectation.where = node.where;
+  if (!expectation.low && !expectation.high && node.find("between") == nullptr)
+    reader.problems().add(node.where,
+                          fmt::format("the expectation of '{}' has no bound; give 'at_least', "
+                                      "'at_most' or 'between'",
+                                      expectation.diagnostic));
+  if (expectation.low && expectation.high && *expectation.low > *expectation.high)
+    reader.problems().add(
+        node.where,
+        fmt::format("no value of '{}' is both at least {} and at most {}", expectation.diagnostic,
+                    shortest(*expectation.low), shortest(*expectation.high)));
+  if (expectation.statistic.empty()) expectation.statistic = "final";
+}
+
+Key between_key() {
+  Key key;
+  key.name = "between";
+  key.type = KeyType::custom;
+  key.doc = "Both bounds [lowest, highest], in the diagnostic's SI unit.";
+  key.default_doc = "none";
+  key.read = [](Reader& reader, const Entry& entry, void* object) {
+    auto& expectation = *static_cast<Expectation*>(object);
+    Key bound;
+    bound.name = "between";
+    if (entry.value.items.size() != 2) {
+      reader.problem(entry.value, fmt::format("'between' expects [lowest, highest], found {}",
+                                              describe(entry.value)));
+      return;
+    }
+    double low = 0, high = 0;
+    if (!reader.number(entry.value.items[0], bound, low) ||
+        !reader.number(entry.value.items[1], bound, high))
+      return;
+    if (expectation.low || expectation.high)
+      reader.problem(entry.value, "give either 'between' or 'at_least' and 'at_most'");
+    expectation.low = low;
+    expectation.high = high;
+  };
+  key.write = [](const void*) -> Json { return nullptr; };  // written as at_least and at_most
+  key.schema = [] {
+    return Json{{"type", "array"},
+                {"minItems", 2},
+                {"maxItems", 2},
+                {"items", {{"type", Json::array({"number", "string"})}}}};
+  };
+  return key;
+}
+
+void complete_output(Reader& reader, const Node&, void* object) {
+  auto& output = *static_cast<OutputControl*>(object);
+  const Scene& scene = reader.scene();
+  const auto fill = [&](OutputStream& stream, double parts) {
+    if (stream.every < 0) stream.every = scene.time.end / parts;
+  };
+  fill(output.fields, 20);
+  fill(output.parcels, 2);
+  fill(output.profiles, 100);
+  fill(output.series, 200);
+  if (output.directory.empty()) output.directory = "results/" + scene.name;
+}
+
+Table stream_table(const char* name, const char* doc, const char* every) {
+  return {.path = std::string("output.") + name,
+          .doc = doc,
+          .keys = {value("every", &OutputStream::every, "s",
+                         "Simulated time between records; 0 s switches the stream off.")
+                       .at_least(0)
+                       .otherwise(every),
+                   value("variables", &OutputStream::variables, "1", "Names of what is written.")
+                       .otherwise("the stream's own list")},
+          .other = {},
+          .finish = {},
+          .write_other = {},
+          .amend_schema = {}};
+}
+
+const Table& checkpoint_table() {
+  static const Table table = {
+      .path = "output.checkpoint",
+      .doc = "Checkpoints from which a run can be resumed.",
+      .keys = {value("wall_interval", &OutputControl::checkpoint_every_wall, "s",
+                     "Wall-clock time between checkpoints; 0 s for none.")
+                   .at_least(0),
+               value("steps", &OutputControl::checkpoint_every_steps, "1",
+                     "Time steps between checkpoints; 0 for none.")
+                   .at_least(0),
+               value("kept", &OutputControl::checkpoints_kept, "1",
+                     "How many of the latest checkpoints are kept.")
+                   .at_least(1)
+                   .at_most(1000)},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+}  // namespace
+
+const Table& operator_table() {
+  static const Table table = {
+      .path = "operators",
+      .doc = "Physics beyond the flow, by plugins, in the order in which it is coupled.",
+      .keys = {value("use", &OperatorBlock::use, "1",
+                     "Identifier of the operator (org.pileus.saturation_adjustment) or path of its "
+                     "library.")
+                   .must(),
+               value("name", &OperatorBlock::name, "1", "Label in the plan, order and ledger.")
+                   .otherwise("the last word of 'use'")},
+      .other = read_parameter,
+      .finish = complete_operator,
+      .write_other =
+          [](const void* object) {
+            Json all = Json::object();
+            for (const auto& [name, raw] : static_cast<const OperatorBlock*>(object)->parameters)
+              all[name] = raw_to_json(raw);
+            return all;
+          },
+      .amend_schema = [](Json& schema) { schema.erase("additionalProperties"); }};
+  return table;
+}
+
+const Table& coupling_table() {
+  static const Table table = {
+      .path = "coupling",
+      .doc = "How operators and transport are composed over a time step.",
+      .keys = {choice("scheme", &Coupling::scheme, {"lie", "strang"},
+                      "One pass (first order), or symmetric half steps (second order)."),
+               value("order", &Coupling::order, "1",
+                     "Names of the operators, the outermost (stiffest) first.")
+                   .otherwise("as listed in 'operators'")},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+Key effects_key() {
+  Key key;
+  key.name = "effects";
+  key.type = KeyType::custom;
+  key.doc =
+      "Which effects are simulated: 'auto' leaves all to the planner, a list switches exactly "
+      "these "
+      "on, a mapping states on, off or watch for those named.";
+  key.default_doc = "auto";
+  key.read = read_effects;
+  key.write = write_effects;
+  key.schema = [] {
+    return Json{
+        {"anyOf",
+         Json::array({Json{{"const", "auto"}},
+                      Json{{"type", "array"}, {"items", {{"type", "string"}}}},
+                      Json{{"type", "object"},
+                           {"additionalProperties",
+                            {{"enum", Json::array({true, false, "on", "off", "watch"})}}}}})}};
+  };
+  return key;
+}
+
+const Table& output_table() {
+  static const Table fields =
+      stream_table("fields", "Gridded fields.", "a twentieth of the simulated time");
+  static const Table parcels = stream_table("parcels", "All parcels.", "half the simulated time");
+  static const Table profiles =
+      stream_table("profiles", "Horizontal means by height.", "a hundredth of the simulated time");
+  static const Table series = stream_table("series", "Domain integrals and extrema over time.",
+                                           "a two-hundredth of the simulated time");
+  static const Table table = {
+      .path = "output",
+      .doc = "What is written, and where.",
+      .keys = {value("directory", &OutputControl::directory, "1", "Folder of the results.")
+                   .otherwise("results/<name of the scene>"),
+               section("fields", &OutputControl::fields, fields),
+               section("parcels", &OutputControl::parcels, parcels),
+               section("profiles", &OutputControl::profiles, profiles),
+               section("series", &OutputControl::series, series),
+               value("compress", &OutputControl::compress, "1", "Compress the files, losslessly."),
+               value("mantissa_bits", &OutputControl::mantissa_bits, "1",
+                     "Bits kept of every number written to fields and parcels; 0 keeps all.")
+                   .at_least(0)
+                   .at_most(52),
+               section("checkpoint", checkpoint_table())},
+      .other = {},
+      .finish = complete_output,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& expectation_table() {
+  static const Table table = {
+      .path = "expect",
+      .doc = "Bounds that a right run keeps; 'pileus check' judges them.",
+      .keys =
+          {value("diagnostic", &Expectation::diagnostic, "1", "Name of a diagnostic.").must(),
+           [] {
+             Key key = value("statistic", &Expectation::statistic, "1",
+                             "Which number of its series: the value at the start or end, an "
+                             "extremum or mean over the run, or final over initial minus one.");
+             key.type = KeyType::custom;
+             key.choices = {"initial", "final", "min", "max", "mean", "relative_change"};
+             key.default_doc = "final";
+             key.read = [choices = key.choices](Reader& reader, const Entry& entry, void* object) {
+               Key words;
+               words.name = "statistic";
+               words.choices = choices;
+               const int index = reader.choice(entry.value, words);
+               if (index >= 0)
+                 static_cast<Expectation*>(object)->statistic =
+                     choices[static_cast<std::size_t>(index)];
+             };
+             key.write = [](const void* object) -> Json {
+               return static_cast<const Expectation*>(object)->statistic;
+             };
+             key.schema = [choices = key.choices] { return Json{{"enum", choices}}; };
+             return key;
+           }(),
+           value("at", &Expectation::at, "s", "Take the value at this simulated time.").at_least(0),
+           value("at_least", &Expectation::low, "1", "Lowest value allowed, in SI."),
+           value("at_most", &Expectation::high, "1", "Highest value allowed, in SI."),
+           between_key(),
+           value("source", &Expectation::source, "1", "Where the bound comes from.")},
+      .other = {},
+      .finish = check_expectation,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+}  // namespace pileus::scene

@@ -1,0 +1,246 @@
+// Files behind a scene: finding and reading them, `extends`, and `--set`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "base/nearest_word.hpp"
+#include "scene/document.hpp"
+#include "scene/tree.hpp"
+
+namespace pileus::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_bytes = std::size_t{16} << 20U;
+constexpr int max_extends = 16;
+
+/// Scene files of the folder the missing one should be in, the nearest name first.
+std::string names_near(const fs::path& missing) {
+  const fs::path folder = missing.has_parent_path() ? missing.parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    return fmt::format("There is no folder '{}'.", folder.string());
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".yaml" || extension == ".yml")
+      names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string nearest = nearest_word(missing.filename().string(), names);
+  if (!nearest.empty()) return fmt::format("Did you mean '{}'?", (folder / nearest).string());
+  if (names.empty()) return fmt::format("The folder '{}' holds no .yaml file.", folder.string());
+  if (names.size() > 8) names.resize(8);
+  return fmt::format("That folder holds {}.", alternatives(names));
+}
+
+/// The text of a file, or an explanation why there is none (`problem` set).
+std::string read_text(const std::string& path) {
+  std::error_code status;
+  const fs::path file(path);
+  if (fs::is_directory(file, status))
+    throw Error(ExitCode::usage,
+                fmt::format("'{}' is a folder, not a scene file. {}", path,
+                            names_near(file / (file.filename().string() + ".yaml"))));
+  if (!fs::exists(file, status))
+    throw Error(ExitCode::usage,
+                fmt::format("There is no scene file '{}' (looked for '{}'). {}", path,
+                            fs::absolute(file).lexically_normal().string(), names_near(file)));
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || stream.bad())
+    throw Error(ExitCode::file, fmt::format("The scene file '{}' cannot be read: {}.", path,
+                                            errno != 0 ? std::strerror(errno) : "input error"));
+  if (text.size() > max_bytes)
+    throw Error(ExitCode::usage,
+                fmt::format("'{}' has {} bytes; no scene is that large. Is it a data file?", path,
+                            text.size()));
+  return text;
+}
+
+Node load_layer(const std::string& path, Problems& problems, std::vector<std::string>& chain);
+
+/// The scene that `node` extends, with `node` laid over it.
+Node extended(Node node, const std::string& path, Problems& problems,
+              std::vector<std::string>& chain) {
+  const Entry* extends = node.find("extends");
+  if (extends == nullptr) return node;
+  if (extends->value.kind != Node::Kind::scalar || extends->value.text.empty()) {
+    problems.add(extends->value.where,
+                 fmt::format("'extends' names one scene file, found {}", describe(extends->value)));
+    return node;
+  }
+  const fs::path parent = fs::path(path).parent_path() / extends->value.text;
+  const std::string canonical = fs::weakly_canonical(parent).string();
+  if (std::find(chain.begin(), chain.end(), canonical) != chain.end() ||
+      chain.size() > max_extends) {
+    problems.add(extends->value.where, "the scenes extend each other in a circle",
+                 extends->value.width());
+    return node;
+  }
+  try {
+    Node base = load_layer(parent.lexically_normal().string(), problems, chain);
+    overlay(base, node);
+    return base;
+  } catch (const Error& failure) {
+    if (failure.code() == ExitCode::file) throw;
+    problems.add(extends->value.where, failure.what(), extends->value.width());
+    return node;
+  }
+}
+
+Node load_layer(const std::string& path, Problems& problems, std::vector<std::string>& chain) {
+  const std::string text = read_text(path);
+  chain.push_back(fs::weakly_canonical(path).string());
+  const std::size_t before = problems.size();
+  Node node = parse_document(path, text, problems);
+  if (problems.size() == before && node.kind == Node::Kind::null)
+    problems.add({path, 1, 1}, "the file is empty; a scene needs at least 'domain' and 'time'");
+  else if (node.kind != Node::Kind::mapping && node.kind != Node::Kind::null)
+    problems.add(node.where, fmt::format("a scene is a mapping of sections (domain:, time:, …), "
+                                         "found {}",
+                                         describe(node)));
+  if (node.kind != Node::Kind::mapping) return {};
+  return extended(std::move(node), path, problems, chain);
+}
+
+void overlay_operators(Node& base, const Node& over) {
+  for (const Node& block : over.items) {
+    const std::string label = operator_label(block);
+    const auto same = std::find_if(base.items.begin(), base.items.end(), [&](const Node& other) {
+      return operator_label(other) == label;
+    });
+    if (same == base.items.end() || label.empty())
+      base.items.push_back(block);
+    else
+      overlay(*same, block);
+  }
+}
+
+/// A value that states a field or is one choice among several forms: merging two of them key by key
+/// would mix the forms, so the newer one replaces the older.
+bool is_whole(const std::string& section, const Entry& entry) {
+  if (section == "initial") return true;
+  return entry.key == "effects" || entry.key == "expect" || entry.key == "reference_buoyancy" ||
+         entry.key == "energy";
+}
+
+void overlay_entries(Node& base, const Node& over, const std::string& section) {
+  for (const Entry& entry : over.entries) {
+    Entry* old = base.find(entry.key);
+    if (old == nullptr) {
+      base.entries.push_back(entry);
+    } else if (!is_whole(section, entry) && old->value.kind == Node::Kind::mapping &&
+               entry.value.kind == Node::Kind::mapping) {
+      overlay_entries(old->value, entry.value, entry.key);
+    } else if (section.empty() && entry.key == "operators" && old->value.kind == Node::Kind::list &&
+               entry.value.kind == Node::Kind::list) {
+      overlay_operators(old->value, entry.value);
+    } else {
+      *old = entry;
+    }
+  }
+}
+
+Node* child_for(Node& node, const std::string& word, const Location& where) {
+  if (node.kind == Node::Kind::list) {  // operators, by label
+    for (Node& item : node.items)
+      if (operator_label(item) == word) return &item;
+    return nullptr;
+  }
+  if (node.kind != Node::Kind::mapping) {
+    node = Node{};
+    node.kind = Node::Kind::mapping;
+    node.where = where;
+  }
+  if (Entry* entry = node.find(word)) return &entry->value;
+  node.entries.push_back({word, where, Node{}});
+  node.entries.back().value.where = where;
+  return &node.entries.back().value;
+}
+
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> words;
+  std::size_t begin = 0;
+  while (begin <= path.size()) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    words.push_back(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string operator_label(const Node& block) {
+  for (const char* key : {"name", "use"}) {
+    const Entry* entry = block.find(key);
+    if (entry == nullptr || entry->value.kind != Node::Kind::scalar) continue;
+    std::string label = entry->value.text;
+    if (key == std::string_view("use")) {
+      label = label.substr(
+          label.find_last_of('/') == std::string::npos ? 0 : label.find_last_of('/') + 1);
+      if (label.ends_with(".so")) label.resize(label.size() - 3);
+      if (label.starts_with("lib")) label.erase(0, 3);
+      label = label.substr(
+          label.find_last_of('.') == std::string::npos ? 0 : label.find_last_of('.') + 1);
+    }
+    return label;
+  }
+  return {};
+}
+
+void overlay(Node& base, const Node& over) {
+  if (base.kind == Node::Kind::mapping && over.kind == Node::Kind::mapping)
+    overlay_entries(base, over, "");
+  else
+    base = over;
+}
+
+Node load_document(const std::string& path, Problems& problems) {
+  std::vector<std::string> chain;
+  return load_layer(path, problems, chain);
+}
+
+void apply_override(Node& root, const std::string& setting, Problems& problems) {
+  const Location where{"command line: --set " + setting, 0, 0};
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    problems.add(where, "expected key=value, for example --set time.end=300");
+    return;
+  }
+  Problems inner;
+  Node value = parse_document(where.file, setting.substr(equals + 1), inner);
+  if (!inner.empty()) {
+    problems.add(where, inner.list().front().text);
+    return;
+  }
+  relocate(value, where);
+  Node* node = &root;
+  for (const std::string& word : split_path(setting.substr(0, equals))) {
+    const bool was_list = node->kind == Node::Kind::list;
+    std::vector<std::string> labels;
+    for (const Node& item : node->items) labels.push_back(operator_label(item));
+    Node* child = child_for(*node, word, where);
+    if (child == nullptr && was_list) {
+      problems.add(where, fmt::format("no operator here is called '{}'; there {}", word,
+                                      labels.empty() ? std::string("is none")
+                                                     : "is " + alternatives(labels)));
+      return;
+    }
+    node = child;
+  }
+  // The entry's own place moves with the value: an unknown key is then blamed on the command line.
+  *node = std::move(value);
+}
+
+}  // namespace pileus::scene
