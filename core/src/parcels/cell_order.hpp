@@ -45,8 +45,8 @@ inline int periodic_cell(double x, double lower, double inverse_spacing, int n) 
   double xi = (x - lower) * inverse_spacing;
   xi -= n * __builtin_floor(xi / n);
   if (!(xi > 0)) return 0;
-  const int i = static_cast<int>(xi);
-  return i < n ? i : n - 1;
+  // So far away that rounding leaves more than a period: any cell will do, but it must be one.
+  return xi < n ? static_cast<int>(xi) : n - 1;
 }
 /// Index of the cell of a height, held inside the walls.
 inline int vertical_cell(double z, double lower, double inverse_spacing, int n) {
