@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "parcels/ellipsoid.hpp"
@@ -46,7 +47,8 @@ MergeCounts Merge<D>::run(Store& store, const CellOrder<D>& order) {
     sources_.push_back({uid[link.to], uid[link.from], link.to, link.from});
   // A fixed order of summation, whatever the order in memory.
   std::sort(sources_.begin(), sources_.end(), [](const Source& a, const Source& b) {
-    return a.receiver_uid != b.receiver_uid ? a.receiver_uid < b.receiver_uid : a.uid < b.uid;
+    return std::tie(a.receiver_uid, a.receiver, a.uid) <
+           std::tie(b.receiver_uid, b.receiver, b.uid);
   });
   cluster_begin_.clear();
   for (std::size_t s = 0; s < sources_.size(); ++s)
@@ -90,6 +92,8 @@ void Merge<D>::find_links(const Store& store, const CellOrder<D>& order) {
           links_[m] = {small_[m], nearest(store, order, small_[m])};
       },
       256);
+  // A parcel whose position is not a number is at no distance from anything.
+  std::erase_if(links_, [](const Link& link) { return link.to == nobody; });
 }
 
 /// Nearest other parcel by distance of centres among the cells around the nearest node, and around
