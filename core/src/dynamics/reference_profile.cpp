@@ -1,7 +1,5 @@
 #include "dynamics/reference_profile.hpp"
 
-#include <algorithm>
-
 namespace pileus::dynamics {
 
 ReferenceProfile::ReferenceProfile(double bottom, double top, int points,
@@ -21,7 +19,7 @@ double ReferenceProfile::operator()(double z) const {
   const double xi = (z - bottom_) * inverse_spacing_;
   // Linear continuation beyond the walls, where parcels may be for the length of a stage.
   const int last = static_cast<int>(value_.size()) - 2;
-  const int i = xi > 0 ? std::min(static_cast<int>(xi), last) : 0;
+  const int i = xi > 0 ? (xi < last ? static_cast<int>(xi) : last) : 0;
   const double low = value_[static_cast<std::size_t>(i)];
   return low + (xi - i) * (value_[static_cast<std::size_t>(i) + 1] - low);
 }

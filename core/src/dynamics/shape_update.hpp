@@ -126,17 +126,19 @@ static inline Matrix2<T> exponential(const Matrix2<T>& a) {
     q = select(large, q * 0.25, q);
     doublings = select(large, doublings + 1.0, doublings);
   }
-  // Truncation below 0.5⁷/14! = 9e-14 relative to one, and 0.5⁸/16! after the last term kept.
+  // The first terms left out, 0.5⁸/16! and 0.5⁸/17!, are below 2e-16.
   T c = 1.0 +
         q * (1.0 / 2 +
              q * (1.0 / 24 +
                   q * (1.0 / 720 +
                        q * (1.0 / 40320 + q * (1.0 / 3628800 + q * (1.0 / 479001600 +
                                                                     q * (1.0 / 87178291200.0)))))));
-  T h = 1.0 + q * (1.0 / 6 +
-                   q * (1.0 / 120 +
-                        q * (1.0 / 5040 + q * (1.0 / 362880 +
-                                               q * (1.0 / 39916800 + q * (1.0 / 6227020800.0))))));
+  T h = 1.0 +
+        q * (1.0 / 6 +
+             q * (1.0 / 120 +
+                  q * (1.0 / 5040 + q * (1.0 / 362880 + q * (1.0 / 39916800 +
+                                                             q * (1.0 / 6227020800.0 +
+                                                                  q * (1.0 / 1307674368000.0)))))));
   for (int i = 0; i < most_squarings; ++i) {
     const auto wanted = doublings > double(i);
     if (!any(wanted)) break;
