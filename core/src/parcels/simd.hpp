@@ -94,6 +94,9 @@ static inline double minimum(double a, double b) {
 static inline double absolute(double a) {
   return a < 0.0 ? -a : a;
 }
+static inline bool any(bool m) {
+  return m;
+}
 static inline double square_root(double a) {
   return __builtin_sqrt(a);
 }
