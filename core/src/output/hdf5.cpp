@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
 #include <utility>
 
 #include "output/hdf5_driver.hpp"
@@ -208,16 +209,47 @@ void write_array(const Session& session, hid_t parent, const std::string& name, 
   session.stop_if_write_failed();
 }
 
-std::vector<double> read_doubles(const Session& session, hid_t parent, const std::string& name) {
-  const Id dataset = open_dataset(session, parent, name);
-  const std::vector<hsize_t> extent = extent_of(session, dataset);
+namespace {
+std::size_t value_count(const Session& session, hid_t dataset) {
   std::size_t count = 1;
-  for (const hsize_t n : extent) count *= n;
-  std::vector<double> values(count);
+  for (const hsize_t n : extent_of(session, dataset)) count *= n;
+  return count;
+}
+
+void read_all(const Session& session, hid_t dataset, const std::string& name, hid_t memory_type,
+              void* data, std::size_t count) {
   if (count > 0)
-    session.check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+    session.check(H5Dread(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
                   "read " + name);
+}
+}  // namespace
+
+template <class T>
+std::vector<T> read_array(const Session& session, hid_t parent, const std::string& name) {
+  const hid_t type = std::is_same_v<T, double>          ? H5T_NATIVE_DOUBLE
+                     : std::is_same_v<T, std::uint64_t> ? H5T_NATIVE_UINT64
+                                                        : H5T_NATIVE_UINT8;
+  const Id dataset = open_dataset(session, parent, name);
+  const std::size_t count = value_count(session, dataset);
+  // A damaged extent must not become an allocation of all memory; deflate gains at most 1032 : 1.
+  if (count / 1032 > H5Dget_storage_size(dataset))
+    throw Error(ExitCode::file, fmt::format("{}: {} claims {} values, more than the file can hold.",
+                                            session.path().string(), name, count));
+  std::vector<T> values(count);
+  read_all(session, dataset, name, type, values.data(), values.size());
   return values;
+}
+template std::vector<double> read_array(const Session&, hid_t, const std::string&);
+template std::vector<std::uint64_t> read_array(const Session&, hid_t, const std::string&);
+template std::vector<std::uint8_t> read_array(const Session&, hid_t, const std::string&);
+
+void read_array_into(const Session& session, hid_t parent, const std::string& name,
+                     hid_t memory_type, void* data, std::size_t count) {
+  const Id dataset = open_dataset(session, parent, name);
+  if (value_count(session, dataset) != count)
+    throw Error(ExitCode::file, fmt::format("{}: {} does not hold {} values.",
+                                            session.path().string(), name, count));
+  read_all(session, dataset, name, memory_type, data, count);
 }
 
 // --- text and attributes -------------------------------------------------------------------------

@@ -86,7 +86,12 @@ void read_slab(const Session& session, hid_t dataset, std::span<const hsize_t> s
 /// A one-dimensional contiguous array, written and read whole.
 void write_array(const Session& session, hid_t parent, const std::string& name, hid_t file_type,
                  hid_t memory_type, const void* data, std::size_t count);
-std::vector<double> read_doubles(const Session& session, hid_t parent, const std::string& name);
+/// All values of a variable, slowest axis first; T is double, std::uint64_t or std::uint8_t.
+template <class T>
+std::vector<T> read_array(const Session& session, hid_t parent, const std::string& name);
+/// As above into memory with room for exactly `count` values; throws when there are more or fewer.
+void read_array_into(const Session& session, hid_t parent, const std::string& name,
+                     hid_t memory_type, void* data, std::size_t count);
 
 /// Text: as a scalar string variable, and as an attribute (fixed length, UTF-8).
 void write_text(const Session& session, hid_t parent, const std::string& name,

@@ -116,7 +116,7 @@ void RecordFile::extend(const Session& session, std::span<const double> times,
 void RecordFile::resume(double time) {
   Session session = Session::update(path_);
   const hid_t file = session.file();
-  times_ = hdf5::read_doubles(session, file, "time");
+  times_ = hdf5::read_array<double>(session, file, "time");
   times_.resize(records_until(times_, time));
   const Id time_axis = hdf5::open_dataset(session, file, "time");
   std::vector<hsize_t> extent{times_.size()};

@@ -65,6 +65,9 @@ StagedFile::StagedFile(std::filesystem::path path, Mode mode)
   file_ = Descriptor(path_, mode_ == Mode::update ? O_RDWR : O_RDONLY, "open");
   if (mode_ == Mode::update) finish_interrupted_commit();
   committed_ = size_ = file_size(file_.get(), path_);
+  if (mode_ == Mode::read)
+    if (const std::vector<std::byte> changes = interrupted_commit(); !changes.empty())
+      look_through(changes);
 }
 
 StagedFile::~StagedFile() {
@@ -199,19 +202,38 @@ void StagedFile::commit_update(bool durable) {
   ::unlink(beside.c_str());
 }
 
-void StagedFile::finish_interrupted_commit() {
+std::vector<std::byte> StagedFile::interrupted_commit() const {
   const std::filesystem::path beside = journal_path();
-  if (::access(beside.c_str(), F_OK) != 0) return;
+  if (::access(beside.c_str(), F_OK) != 0) return {};
   const std::string text = read_text_file(beside);
-  JournalHeader header{};
-  if (journal_is_complete(text)) {
-    std::memcpy(&header, text.data(), sizeof header);
-    if (file_size(file_.get(), path_) >= std::min(header.committed_bytes, header.final_bytes)) {
-      const auto* first = reinterpret_cast<const std::byte*>(text.data());
-      apply(std::vector<std::byte>(first, first + text.size()));
-    }
+  if (!journal_is_complete(text)) return {};
+  JournalHeader header;
+  std::memcpy(&header, text.data(), sizeof header);
+  // A file shorter than the journal's start is not the one the journal was made for.
+  if (file_size(file_.get(), path_) < std::min(header.committed_bytes, header.final_bytes))
+    return {};
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
+}
+
+void StagedFile::finish_interrupted_commit() {
+  const std::vector<std::byte> changes = interrupted_commit();
+  if (!changes.empty()) apply(changes);
+  ::unlink(journal_path().c_str());
+}
+
+void StagedFile::look_through(const std::vector<std::byte>& journal) {
+  JournalHeader header;
+  std::memcpy(&header, journal.data(), sizeof header);
+  const std::byte* at = journal.data() + sizeof header;
+  for (std::uint64_t page = 0; page < header.page_count; ++page) {
+    PageHeader page_header;
+    std::memcpy(&page_header, at, sizeof page_header);
+    at += sizeof page_header;
+    std::memcpy(held_page(page_header.offset / page_bytes).get(), at, page_header.bytes);
+    at += page_header.bytes;
   }
-  ::unlink(beside.c_str());
+  committed_ = size_ = header.final_bytes;
 }
 
 void StagedFile::discard() noexcept {

@@ -22,7 +22,7 @@ class StagedFile {
   enum class Mode {
     create,  // appears under its name at the commit, replacing what was there
     update,  // an existing file; an interrupted commit of an earlier process is finished first
-    read,
+    read,    // sees an interrupted commit as finished
   };
 
   /// Opens; throws Error(ExitCode::file).
@@ -58,7 +58,11 @@ class StagedFile {
 
   std::filesystem::path journal_path() const;
   std::filesystem::path aside_path() const;
+  /// The journal of a commit that was decided but not finished, or nothing.
+  std::vector<std::byte> interrupted_commit() const;
   void finish_interrupted_commit();
+  /// Shows a reader the content the journal leads to, without touching the file.
+  void look_through(const std::vector<std::byte>& journal);
   Page& held_page(std::uint64_t index);
   void commit_new(bool durable);
   void commit_update(bool durable);

@@ -39,7 +39,7 @@ std::size_t field_size() {
 
 std::vector<double> stored(const std::filesystem::path& path, const std::string& name) {
   const hdf5::Session session = hdf5::Session::read(path);
-  return hdf5::read_doubles(session, session.file(), name);
+  return hdf5::read_array<double>(session, session.file(), name);
 }
 
 TEST(FieldFile, ExactValuesComeBackBitForBit) {

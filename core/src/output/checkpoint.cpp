@@ -1,0 +1,221 @@
+#include "output/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "base/log.hpp"
+
+namespace pileus::output {
+
+using hdf5::Id;
+using hdf5::Session;
+
+namespace {
+
+constexpr std::string_view file_prefix = "checkpoint_", file_suffix = ".h5";
+constexpr const char* format_name = "pileus checkpoint 1";
+
+/// The step in the name of a checkpoint, or nothing for other files.
+std::optional<std::uint64_t> step_of(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  if (name.size() <= file_prefix.size() + file_suffix.size() || !name.starts_with(file_prefix) ||
+      !name.ends_with(file_suffix))
+    return {};
+  std::uint64_t step = 0;
+  const char* end = name.data() + name.size() - file_suffix.size();
+  const auto [stop, error] = std::from_chars(name.data() + file_prefix.size(), end, step);
+  if (error != std::errc{} || stop != end) return {};
+  return step;
+}
+
+struct Header {
+  double time = 0, dt = 0;
+  std::uint64_t step = 0, parcels = 0, dimension = 0;
+
+  void add_to(PayloadDigest& digest) const {
+    digest.add("header/time", &time, sizeof time);
+    digest.add("header/dt", &dt, sizeof dt);
+    const std::array<std::uint64_t, 3> numbers = {step, parcels, dimension};
+    digest.add("header/numbers", numbers.data(), sizeof numbers);
+  }
+};
+
+void write_header(const Session& session, const Header& header) {
+  const hid_t file = session.file();
+  hdf5::write_attribute(session, file, "format", format_name);
+  hdf5::write_attribute(session, file, "time", H5T_NATIVE_DOUBLE, &header.time);
+  hdf5::write_attribute(session, file, "dt", H5T_NATIVE_DOUBLE, &header.dt);
+  hdf5::write_attribute(session, file, "step", H5T_NATIVE_UINT64, &header.step);
+  hdf5::write_attribute(session, file, "parcels", H5T_NATIVE_UINT64, &header.parcels);
+  hdf5::write_attribute(session, file, "dimension", H5T_NATIVE_UINT64, &header.dimension);
+}
+
+Header read_header(const Session& session) {
+  const hid_t file = session.file();
+  const std::string format = hdf5::read_text_attribute(session, file, "format");
+  if (format != format_name)
+    throw Error(ExitCode::file, fmt::format("{}: the file has the form \"{}\", not \"{}\".",
+                                            session.path().string(), format, format_name));
+  Header header;
+  hdf5::read_attribute(session, file, "time", H5T_NATIVE_DOUBLE, &header.time);
+  hdf5::read_attribute(session, file, "dt", H5T_NATIVE_DOUBLE, &header.dt);
+  hdf5::read_attribute(session, file, "step", H5T_NATIVE_UINT64, &header.step);
+  hdf5::read_attribute(session, file, "parcels", H5T_NATIVE_UINT64, &header.parcels);
+  hdf5::read_attribute(session, file, "dimension", H5T_NATIVE_UINT64, &header.dimension);
+  return header;
+}
+
+void require_digest(const Session& session, const PayloadDigest& digest) {
+  if (hdf5::read_text_attribute(session, session.file(), "payload_sha256") != digest.finish_hex())
+    throw Error(ExitCode::file,
+                fmt::format("{}: the checkpoint is damaged: its content does not have the "
+                            "checksum it was written with.",
+                            session.path().string()));
+}
+
+Id open_state(const Session& session) {
+  return Id(session.check(H5Gopen2(session.file(), "state", H5P_DEFAULT), "open the state"));
+}
+
+void require_same_columns(const Session& session, const Header& header, hid_t state,
+                          const parcels::Store& store) {
+  const std::vector<std::string> names = hdf5::object_names(session, state);
+  std::set<std::string> found(names.begin(), names.end()), wanted = {"uid"};
+  for (int column = 0; column < store.state_columns(); ++column)
+    wanted.insert(store.column_name(column));
+  std::vector<std::string> missing, surplus;
+  std::set_difference(wanted.begin(), wanted.end(), found.begin(), found.end(),
+                      std::back_inserter(missing));
+  std::set_difference(found.begin(), found.end(), wanted.begin(), wanted.end(),
+                      std::back_inserter(surplus));
+  if (header.dimension == static_cast<std::uint64_t>(store.dimension()) && missing.empty() &&
+      surplus.empty())
+    return;
+  throw Error(ExitCode::file,
+              fmt::format("{}: the checkpoint is of another scene: it is {}-dimensional (the scene "
+                          "{}), lacks [{}] and has [{}] in addition.",
+                          session.path().string(), header.dimension, store.dimension(),
+                          fmt::join(missing, ", "), fmt::join(surplus, ", ")));
+}
+
+void remove_older(const std::filesystem::path& folder, const std::filesystem::path& newest,
+                  int keep) {
+  int kept = 1;
+  for (const std::filesystem::path& path : list_checkpoints(folder)) {
+    // Steps beyond the newest belong to a future that a resumed run has given up.
+    const bool abandoned = *step_of(path) > *step_of(newest);
+    if (path == newest || (!abandoned && kept++ < keep)) continue;
+    std::error_code error;
+    std::filesystem::remove(path, error);
+    if (error)
+      log(LogLevel::warning,
+          fmt::format("{}: cannot remove the old checkpoint: {}.", path.string(), error.message()));
+  }
+}
+
+}  // namespace
+
+std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
+                                       const parcels::Store& store, const Checkpoint& checkpoint,
+                                       int keep) {
+  const std::filesystem::path path =
+      folder / fmt::format("{}{:012}{}", file_prefix, checkpoint.step, file_suffix);
+  const Header header{checkpoint.time, checkpoint.dt, checkpoint.step, store.size(),
+                      static_cast<std::uint64_t>(store.dimension())};
+  Session session = Session::create(path);
+  PayloadDigest digest;
+  write_header(session, header);
+  header.add_to(digest);
+  {
+    const Id state = hdf5::create_group(session, session.file(), "state");
+    hdf5::write_array(session, state, "uid", H5T_STD_U64LE, H5T_NATIVE_UINT64, store.uid(),
+                      store.size());
+    digest.add("state/uid", store.uid(), store.size() * sizeof(std::uint64_t));
+    for (int column = 0; column < store.state_columns(); ++column) {
+      const std::string name = store.column_name(column);
+      hdf5::write_array(session, state, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                        store.column(column), store.size());
+      digest.add("state/" + name, store.column(column), store.size() * sizeof(double));
+    }
+  }
+  write_named_data(session, checkpoint.data, digest);
+  hdf5::write_attribute(session, session.file(), "payload_sha256", digest.finish_hex());
+  session.commit(true);
+  remove_older(folder, path, std::max(keep, 1));
+  return path;
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path, parcels::Store& store) {
+  const Session session = Session::read(path);
+  const Header header = read_header(session);
+  const Id state = open_state(session);
+  require_same_columns(session, header, state, store);
+  PayloadDigest digest;
+  header.add_to(digest);
+  if (header.parcels > std::filesystem::file_size(path) / sizeof(double))
+    throw Error(ExitCode::file, fmt::format("{}: the checkpoint is damaged: it claims {} parcels, "
+                                            "more than the file can hold.",
+                                            path.string(), header.parcels));
+  store.resize(header.parcels);
+  hdf5::read_array_into(session, state, "uid", H5T_NATIVE_UINT64, store.uid(), store.size());
+  digest.add("state/uid", store.uid(), store.size() * sizeof(std::uint64_t));
+  for (int column = 0; column < store.state_columns(); ++column) {
+    const std::string name = store.column_name(column);
+    hdf5::read_array_into(session, state, name, H5T_NATIVE_DOUBLE, store.column(column),
+                          store.size());
+    digest.add("state/" + name, store.column(column), store.size() * sizeof(double));
+  }
+  Checkpoint checkpoint{header.time, header.step, header.dt, read_named_data(session, digest)};
+  require_digest(session, digest);
+  return checkpoint;
+}
+
+void verify_checkpoint(const std::filesystem::path& path) {
+  const Session session = Session::read(path);
+  const Header header = read_header(session);
+  PayloadDigest digest;
+  header.add_to(digest);
+  const Id state = open_state(session);
+  for (const std::string& name : hdf5::object_names(session, state)) {
+    if (name == "uid") {
+      const auto values = hdf5::read_array<std::uint64_t>(session, state, name);
+      digest.add("state/uid", values.data(), values.size() * sizeof(std::uint64_t));
+    } else {
+      const auto values = hdf5::read_array<double>(session, state, name);
+      digest.add("state/" + name, values.data(), values.size() * sizeof(double));
+    }
+  }
+  read_named_data(session, digest);
+  require_digest(session, digest);
+}
+
+std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> paths;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (step_of(entry.path())) paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end(),
+            [](const auto& a, const auto& b) { return *step_of(a) > *step_of(b); });
+  return paths;
+}
+
+std::optional<std::filesystem::path> find_newest_valid_checkpoint(
+    const std::filesystem::path& folder) {
+  for (const std::filesystem::path& path : list_checkpoints(folder)) {
+    try {
+      verify_checkpoint(path);
+      return path;
+    } catch (const Error& error) {
+      log(LogLevel::warning, fmt::format("Skipping a damaged checkpoint. {}", error.what()));
+    }
+  }
+  return {};
+}
+
+}  // namespace pileus::output
