@@ -7,15 +7,32 @@
 
 namespace pileus::parcels {
 
+namespace {
+
 template <int D>
-void confine(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
+void wrap(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
   for (int a = 0; a < D - 1; ++a) {
     double& x = store.position(a)[p];
     const double offset = x - grid.lower[a];
     if (offset >= 0 && offset < grid.extent[a]) continue;
     x = grid.lower[a] + (offset - grid.extent[a] * std::floor(offset / grid.extent[a]));
-    if (!(x < grid.lower[a] + grid.extent[a])) x = grid.lower[a];  // rounded up to the seam
+    // Rounded up to the seam or below it; a value that is not a number stays one, to be noticed.
+    if (x >= grid.lower[a] + grid.extent[a] || x < grid.lower[a]) x = grid.lower[a];
   }
+}
+
+}  // namespace
+
+template <int D>
+void hold_inside(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
+  wrap<D>(store, grid, p);
+  double& z = store.position(D - 1)[p];
+  z = std::clamp(z, grid.bottom(), grid.top());
+}
+
+template <int D>
+void confine(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
+  wrap<D>(store, grid, p);
   double& z = store.position(D - 1)[p];
   const double bottom = grid.bottom(), top = grid.top();
   if (z >= bottom && z <= top) return;
@@ -37,6 +54,8 @@ void confine(Store& store, const mesh::Grid<D>& grid) {
 
 template void confine<2>(Store&, const mesh::Grid<2>&);
 template void confine<3>(Store&, const mesh::Grid<3>&);
+template void hold_inside<2>(Store&, const mesh::Grid<2>&, std::size_t);
+template void hold_inside<3>(Store&, const mesh::Grid<3>&, std::size_t);
 template void confine<2>(Store&, const mesh::Grid<2>&, std::size_t);
 template void confine<3>(Store&, const mesh::Grid<3>&, std::size_t);
 

@@ -12,7 +12,12 @@ namespace pileus::parcels {
 template <int D>
 void confine(Store& store, const mesh::Grid<D>& grid);
 
-/// The same for parcel p alone.
+/// Wraps horizontally and holds the height between the walls, without touching the shape: for small
+/// displacements that are not motion with the flow.
+template <int D>
+void hold_inside(Store& store, const mesh::Grid<D>& grid, std::size_t p);
+
+/// confine() for parcel p alone.
 template <int D>
 void confine(Store& store, const mesh::Grid<D>& grid, std::size_t p);
 

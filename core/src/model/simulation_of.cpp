@@ -1,0 +1,318 @@
+#include "model/simulation_of.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "model/initial_state.hpp"
+#include "output/grid_fields.hpp"
+
+namespace pileus::model {
+namespace {
+
+template <int D>
+mesh::Grid<D> make_grid(const scene::Domain& domain) {
+  std::array<int, D> cells{};
+  std::array<double, D> lower{}, extent{};
+  std::copy_n(domain.cells.begin(), D, cells.begin());
+  std::copy_n(domain.lower.begin(), D, lower.begin());
+  std::copy_n(domain.extent.begin(), D, extent.begin());
+  return mesh::Grid<D>(cells, lower, extent);
+}
+
+dynamics::TimeStepControl make_step_control(const scene::TimeControl& time) {
+  // A fluid at rest limits nothing; then the run is one step per output, or the cap.
+  const double cap = time.largest > 0 ? time.largest : std::max(time.end, 1e-300);
+  return {time.alpha, time.courant, cap, time.fixed};
+}
+
+/// The reference profile resolves the mesh sixteen-fold: an exact reproduction of linear ones, and
+/// of piecewise linear ones with knots on the levels.
+constexpr int reference_points_per_cell = 16;
+
+}  // namespace
+
+template <int D>
+SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars,
+                              Physics& physics)
+    : grid_(make_grid<D>(scene.domain)),
+      time_control_(scene.time),
+      step_control_(make_step_control(scene.time)),
+      background_(scene.background),
+      boundaries_(scene.boundaries),
+      numerics_(scene.numerics),
+      reference_(grid_.bottom(), grid_.top(), reference_points_per_cell * grid_.nz() + 1,
+                 reference_function(scene)),
+      buoyancy_(physics),
+      deposit_(grid_),
+      upkeep_(grid_, deposit_.tiling(), grid_.cell_volume() / scene.parcels.min_volume_ratio,
+              parcels::SplitCriterion<D>::make(grid_, scene.parcels.max_aspect_ratio,
+                                               scene.parcels.max_volume_ratio)),
+      correction_(grid_, {scene.parcels.correction_iterations, scene.parcels.gradient_prefactor,
+                          scene.parcels.max_compression}) {
+  store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
+}
+
+template <int D>
+void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
+  zero_wall_vorticity_ = zero_wall_vorticity;
+  mesh::FlowOptions flow;
+  std::copy_n(background_.coriolis.begin(), 3, flow.planetary_vorticity.begin());
+  flow.zero_vertical_vorticity = zero_wall_vorticity;
+  flow.filter = numerics_.spectral_filter;
+  flow.vertical_derivative =
+      numerics_.vertical_derivative == scene::NumericsControl::VerticalDerivative::compact
+          ? mesh::VerticalDerivative::compact
+          : mesh::VerticalDerivative::centred;
+  if (!reference_.is_zero())
+    for (int k = 0; k <= grid_.nz(); ++k)
+      flow.reference_stratification.push_back(
+          reference_.gradient(grid_.bottom() + k * grid_.spacing[D - 1]));
+  transport_ = std::make_unique<dynamics::Transport<D>>(
+      grid_, flow, background_.coriolis[2],
+      time_control_.scheme == scene::RungeKutta::order4_stages5 ? dynamics::carpenter_kennedy_4()
+                                                                : dynamics::williamson_3(),
+      numerics_.shape_integrator == scene::NumericsControl::ShapeIntegrator::exponential
+          ? dynamics::ShapeIntegrator::exponential
+          : dynamics::ShapeIntegrator::runge_kutta,
+      reference_);
+}
+
+template <int D>
+void SimulationOf<D>::initialise(const scene::Scene& scene) {
+  fill_initial_state(scene, grid_, *store_, wind_);
+  upkeep_.reorder(*store_, times_);
+  tile_begin_ = upkeep_.tile_begin();
+  build_transport({false, false});
+  build_transport(walls_without_vorticity());
+}
+
+/// Vertical vorticity on a wall stays zero if it starts at zero and nothing turns the frame about
+/// the vertical: Dζ/Dt = (ζ + f_z) w_z there. "Zero" is below a thousandth of the interior's r.m.s.
+template <int D>
+std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
+  using Choice = scene::Boundaries::WallVorticity;
+  if (D == 2 || boundaries_.vertical_vorticity == Choice::free) return {false, false};
+  if (boundaries_.vertical_vorticity == Choice::zero) return {true, true};
+  if (background_.coriolis[2] != 0) return {false, false};
+  AlignedArray<double> field(grid_.nodes() * mesh::DepositRecord<D>::width);
+  parcels::SupportOffsets<D> offsets;
+  offsets.update(*store_);
+  parcels::Deposit<D> deposit(grid_);
+  deposit.means(*store_, offsets, tile_begin_,
+                {store_->vorticity(store_->vorticity_components() - 1)}, field.data());
+  double bottom = 0, top = 0, interior = 0;
+  for (std::size_t c = 0; c < grid_.columns(); ++c)
+    for (int k = 0; k <= grid_.nz(); ++k) {
+      const double zeta = field[grid_.node(c, k) * mesh::DepositRecord<D>::width + 1];
+      (k == 0 ? bottom : k == grid_.nz() ? top : interior) += zeta * zeta;
+    }
+  const double allowed = 1e-6 * interior / std::max(1, grid_.nz() - 1);
+  return {bottom <= allowed, top <= allowed};
+}
+
+template <int D>
+void SimulationOf<D>::save(output::NamedData& data) const {
+  data.arrays["mean_wind"] = {wind_.velocity[0], wind_.velocity[1]};
+  data.counters["zero_wall_vorticity"] = {zero_wall_vorticity_[0], zero_wall_vorticity_[1]};
+  data.counters["tile_begin"].assign(tile_begin_.begin(), tile_begin_.end());
+}
+
+template <int D>
+void SimulationOf<D>::restore(const output::NamedData& data) {
+  const auto& wind = data.arrays.at("mean_wind");
+  wind_.velocity = {wind.at(0), wind.at(1)};
+  const auto& zero = data.counters.at("zero_wall_vorticity");
+  const auto& tiles = data.counters.at("tile_begin");
+  if (tiles.size() != deposit_.tiling().tiles().size() + 1 || tiles.back() != store_->size())
+    throw Error(ExitCode::usage, "The checkpoint belongs to a different mesh.");
+  tile_begin_.assign(tiles.begin(), tiles.end());
+  build_transport({zero.at(0) != 0, zero.at(1) != 0});
+}
+
+template <int D>
+void SimulationOf<D>::evaluate() {
+  flow_summary_ = transport_->evaluate(*store_, buoyancy_, tile_begin_, wind_, time_, times_);
+  require_finite();
+}
+
+/// Whatever is not finite anywhere on a level spreads over the whole level in the horizontal
+/// transforms, so one column shows it.
+template <int D>
+void SimulationOf<D>::require_finite() const {
+  double sum = 0;
+  const double* column = transport_->flow();
+  const auto values = static_cast<std::size_t>(grid_.levels()) * mesh::FlowRecord<D>::width;
+  for (std::size_t i = 0; i < values; ++i) sum += column[i];
+  if (std::isfinite(sum)) return;
+  for (std::size_t p = 0; p < store_->size(); ++p)
+    for (int c = 0; c < store_->state_columns(); ++c)
+      if (!std::isfinite(store_->column(c)[p]))
+        throw Error(
+            ExitCode::numerical,
+            fmt::format("The state is no longer finite at t = {:.6g} s, step {}: {} of parcel "
+                        "{} is {}.",
+                        time_, step_, store_->column_name(c), store_->uid()[p],
+                        store_->column(c)[p]));
+  throw Error(ExitCode::numerical,
+              fmt::format("The flow is no longer finite at t = {:.6g} s, step {}, although every "
+                          "parcel is: a value has overflowed on the mesh.",
+                          time_, step_));
+}
+
+template <int D>
+dynamics::TimeStep SimulationOf<D>::allowed_step() {
+  dynamics::TimeStep allowed =
+      dynamics::choose_time_step<D>(step_control_, grid_, flow_summary_, background_.coriolis[2]);
+  if (!step_control_.fixed) {
+    const double physics = buoyancy_.physics.largest_step(*store_, time_, step_);
+    if (physics < allowed.seconds) allowed = {physics, "operator"};
+  }
+  return allowed;
+}
+
+template <int D>
+void SimulationOf<D>::begin_step(double dt) {
+  dt_ = dt;
+  transport_->begin_step(*store_, wind_, dt, times_);
+}
+
+template <int D>
+StepReport SimulationOf<D>::finish_step() {
+  StepReport report;
+  report.dt = dt_;
+  transport_->finish_step(*store_, buoyancy_, tile_begin_, wind_, time_, dt_, times_);
+  {
+    const PhaseScope scope(times_, Phase::operators);
+    buoyancy_.physics.apply(*store_, time_, dt_, step_);
+  }
+  report.upkeep = upkeep_.run(*store_, transport_->offsets(), step_, times_);
+  tile_begin_ = upkeep_.tile_begin();
+  {
+    const PhaseScope scope(times_, Phase::correction);
+    transport_->offsets().update(*store_);
+    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit());
+  }
+  time_ += dt_;
+  ++step_;
+  return report;
+}
+
+template <int D>
+std::vector<output::Axis> SimulationOf<D>::axes() const {
+  return output::node_axes(grid_);
+}
+
+template <int D>
+parcels::VolumeError SimulationOf<D>::volume_error() const {
+  constexpr int width = mesh::DepositRecord<D>::width;
+  const double inverse = 1.0 / grid_.cell_volume();
+  parcels::VolumeError error;
+  double sum = 0;
+  for (std::size_t c = 0; c < grid_.columns(); ++c)
+    for (int k = 0; k <= grid_.nz(); ++k) {
+      const double e = transport_->deposited()[grid_.node(c, k) * width] * inverse - 1.0;
+      sum += e * e;
+      error.largest = std::max(error.largest, std::abs(e));
+    }
+  error.rms = std::sqrt(sum / static_cast<double>(node_count()));
+  return error;
+}
+
+template <int D>
+double SimulationOf<D>::grid_kinetic_energy() const {
+  double sum = 0;
+  for (std::size_t c = 0; c < grid_.columns(); ++c)
+    for (int k = 0; k <= grid_.nz(); ++k) {
+      const std::size_t node = grid_.node(c, k);
+      const double* u = transport_->flow() + node * mesh::FlowRecord<D>::width;
+      double square = 0;
+      for (int d = 0; d < D; ++d) square += u[d] * u[d];
+      const double volume = transport_->deposited()[node * mesh::DepositRecord<D>::width];
+      sum += (k == 0 || k == grid_.nz() ? 0.5 : 1.0) * volume * square;
+    }
+  return 0.5 * sum / grid_.domain_volume();
+}
+
+template <int D>
+std::vector<output::Variable> SimulationOf<D>::grid_fields() const {
+  std::vector<output::Variable> fields;
+  if constexpr (D == 3)
+    fields = {{"x_velocity", "m s-1", "velocity in x"},
+              {"y_velocity", "m s-1", "velocity in y"},
+              {"z_velocity", "m s-1", "upward velocity", "upward_air_velocity"},
+              {"x_vorticity", "s-1", "vorticity component in x"},
+              {"y_vorticity", "s-1", "vorticity component in y"},
+              {"z_vorticity", "s-1", "upward component of vorticity",
+               "atmosphere_upward_relative_vorticity"}};
+  else
+    fields = {{"x_velocity", "m s-1", "velocity in x"},
+              {"z_velocity", "m s-1", "upward velocity", "upward_air_velocity"},
+              {"vorticity", "s-1", "vorticity dw/dx - du/dz"}};
+  fields.push_back({"buoyancy", "m s-2", "buoyancy"});
+  fields.push_back({"volume", D == 3 ? "m3" : "m2", "volume of parcels gathered at a node"});
+  for (const parcels::Scalar& s : store_->scalars())
+    if (s.name != "buoyancy") fields.push_back({s.name, s.units, s.name});
+  return fields;
+}
+
+template <int D>
+void SimulationOf<D>::grid_field(const std::string& name, std::vector<double>& values) {
+  using Flow = mesh::FlowRecord<D>;
+  using Record = mesh::DepositRecord<D>;
+  if (name == "volume")
+    return output::copy_nodes(grid_, transport_->deposited(), Record::width, Record::volume,
+                              values);
+  if (name == "buoyancy") {
+    output::copy_nodes(grid_, transport_->deposited(), Record::width, Record::buoyancy, values);
+    for (int k = 0; k <= grid_.nz(); ++k) {
+      const double b = reference_(grid_.bottom() + k * grid_.spacing[D - 1]);
+      for (std::size_t c = 0; c < grid_.columns(); ++c)
+        values[static_cast<std::size_t>(k) * grid_.columns() + c] += b;
+    }
+    return;
+  }
+  static const std::vector<std::string> directions =
+      D == 3 ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{"x", "z"};
+  for (std::size_t d = 0; d < directions.size(); ++d)
+    if (name == directions[d] + "_velocity")
+      return output::copy_nodes(grid_, transport_->flow(), Flow::width, static_cast<int>(d),
+                                values);
+  if (name.ends_with("vorticity")) {
+    constexpr int components = Record::vorticity_components;
+    AlignedArray<double> vorticity(grid_.nodes() * components);
+    mesh::grid_vorticity<D>(grid_, transport_->flow(), vorticity.data());
+    for (int c = 0; c < components; ++c)
+      if (components == 1 || name == directions[static_cast<std::size_t>(c)] + "_vorticity")
+        return output::copy_nodes(grid_, vorticity.data(), components, c, values);
+  }
+  const int scalar = store_->find_scalar(name);
+  if (scalar < 0) throw Error(ExitCode::usage, fmt::format("There is no field '{}'.", name));
+  AlignedArray<double> field(grid_.nodes() * Record::width);
+  deposit_.means(*store_, transport_->offsets(), tile_begin_, {store_->scalar(scalar)},
+                 field.data());
+  output::copy_nodes(grid_, field.data(), Record::width, 1, values);
+}
+
+template <int D>
+std::size_t SimulationOf<D>::allocated_bytes() const {
+  return store_->allocated_bytes() + transport_->allocated_bytes() + upkeep_.allocated_bytes() +
+         correction_.allocated_bytes() + deposit_.allocated_bytes() +
+         transport_->solver().allocated_bytes();
+}
+
+std::unique_ptr<Simulation> make_simulation(const scene::Scene& scene,
+                                            std::vector<parcels::Scalar> scalars,
+                                            Physics& physics) {
+  if (scene.domain.dimension == 2)
+    return std::make_unique<SimulationOf<2>>(scene, std::move(scalars), physics);
+  return std::make_unique<SimulationOf<3>>(scene, std::move(scalars), physics);
+}
+
+template class SimulationOf<2>;
+template class SimulationOf<3>;
+
+}  // namespace pileus::model

@@ -1,0 +1,76 @@
+// The simulation of one dimension: composes mesh, parcels and dynamics into a step.
+#pragma once
+#include <memory>
+
+#include "model/simulation.hpp"
+
+namespace pileus::model {
+
+template <int D>
+class SimulationOf final : public Simulation {
+ public:
+  SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars, Physics& physics);
+
+  void initialise(const scene::Scene& scene) override;
+  void save(output::NamedData& data) const override;
+  void restore(const output::NamedData& data) override;
+
+  void evaluate() override;
+  dynamics::TimeStep allowed_step() override;
+  void begin_step(double dt) override;
+  StepReport finish_step() override;
+  void probe() override { transport_->probe(*store_, times_); }
+
+  const double* velocity(int direction) const override { return transport_->velocity(direction); }
+  const double* buoyancy() const override { return buoyancy_.last; }
+  double reference_buoyancy(double z) const override { return transport_->reference()(z); }
+  const mesh::FlowSummary& flow_summary() const override { return flow_summary_; }
+
+  int dimension() const override { return D; }
+  double domain_volume() const override { return grid_.domain_volume(); }
+  double cell_volume() const override { return grid_.cell_volume(); }
+  std::vector<output::Axis> axes() const override;
+  std::size_t node_count() const override {
+    return grid_.columns() * static_cast<std::size_t>(grid_.nz() + 1);
+  }
+  void grid_field(const std::string& name, std::vector<double>& values) override;
+  std::vector<output::Variable> grid_fields() const override;
+  parcels::VolumeError volume_error() const override;
+  double grid_kinetic_energy() const override;
+  std::size_t allocated_bytes() const override;
+  std::size_t broken_shapes() const override { return transport_->broken_shapes(); }
+
+ private:
+  /// Remembers the buoyancy the transport last saw, for diagnostics of the evaluated state.
+  struct TracedBuoyancy final : dynamics::BuoyancySource {
+    explicit TracedBuoyancy(Physics& p) : physics(p) {}
+    const double* buoyancy(parcels::Store& store, double time) override {
+      return last = physics.buoyancy(store, time);
+    }
+    Physics& physics;
+    const double* last = nullptr;
+  };
+
+  void build_transport(std::array<bool, 2> zero_wall_vorticity);
+  std::array<bool, 2> walls_without_vorticity() const;
+  void require_finite() const;
+
+  mesh::Grid<D> grid_;
+  scene::TimeControl time_control_;
+  dynamics::TimeStepControl step_control_;
+  scene::Background background_;
+  scene::Boundaries boundaries_;
+  scene::NumericsControl numerics_;
+  dynamics::ReferenceProfile reference_;
+  TracedBuoyancy buoyancy_;
+  std::array<bool, 2> zero_wall_vorticity_{false, false};
+  std::unique_ptr<dynamics::Transport<D>> transport_;
+  parcels::Deposit<D> deposit_;  // tiling and gridded output beside the transport's own
+  parcels::Upkeep<D> upkeep_;
+  parcels::VolumeCorrection<D> correction_;
+  std::vector<std::size_t> tile_begin_;
+  mesh::FlowSummary flow_summary_;
+  dynamics::TimeStep allowed_{0, ""};
+};
+
+}  // namespace pileus::model
