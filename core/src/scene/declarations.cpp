@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scene/field_sampler.hpp"
 #include "scene/reader.hpp"
 
 namespace pileus::scene {
@@ -68,6 +69,11 @@ void complete_background(Reader& reader, const Node& node, void* object) {
     field.where = frequency->value.where;
   }
   background.reference_buoyancy.units = "m s-2";
+  if (reference != nullptr && reader.problems().empty() &&
+      !FieldSampler(background.reference_buoyancy, reader.scene()).height_alone())
+    reader.problem(reference->value,
+                   "the reference buoyancy is a function of z alone: a value, a formula of z or a "
+                   "profile, without noise");
   background.squared_buoyancy_frequency.reset();
 }
 

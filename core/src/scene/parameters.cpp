@@ -1,0 +1,207 @@
+#include "scene/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/nearest_word.hpp"
+#include "scene/tree.hpp"
+
+namespace pileus::scene {
+namespace {
+
+/// Checks the values of one operator's block against its declarations.
+class Checker {
+ public:
+  Checker(const OperatorBlock& block, const Constants& constants, Problems& problems)
+      : block_(block), constants_(constants), problems_(problems) {}
+
+  void report(const Location& where, const std::string& text, const std::string& value) {
+    problems_.add(where, fmt::format("{} of operator '{}'", text, block_.name),
+                  std::max(1, character_count(value)));
+  }
+
+  bool number(const ParameterDeclaration& declared, const std::string& text, const Location& where,
+              double& value) {
+    const NumberResult result = read_number(text, declared.units, constants_);
+    if (!result.ok()) {
+      problems_.add(where,
+                    fmt::format("parameter '{}' of operator '{}': {}", declared.name, block_.name,
+                                result.problem),
+                    std::max(1, character_count(text)));
+      return false;
+    }
+    if (!in_range(declared, result.value, text, where)) return false;
+    value = result.value;
+    return true;
+  }
+
+  void integer(const ParameterDeclaration& declared, const RawValue& raw, double& value) {
+    const auto whole = raw.is_list ? std::optional<std::int64_t>() : read_integer(raw.text);
+    if (!whole)
+      report(raw.where,
+             fmt::format("expected a whole number, found {}, for parameter '{}'", found(raw),
+                         declared.name),
+             raw.text);
+    else if (in_range(declared, static_cast<double>(*whole), raw.text, raw.where))
+      value = static_cast<double>(*whole);
+  }
+
+  void toggle(const ParameterDeclaration& declared, const RawValue& raw, double& value) {
+    if (const auto state = raw.is_list ? std::optional<bool>() : read_switch(raw.text))
+      value = *state ? 1 : 0;
+    else
+      report(raw.where,
+             fmt::format("expected 'true' or 'false', found {}, for parameter '{}'", found(raw),
+                         declared.name),
+             raw.text);
+  }
+
+  void choice(const ParameterDeclaration& declared, const RawValue& raw, double& value,
+              std::string& word) {
+    const auto& choices = declared.choices;
+    const auto place = std::find(choices.begin(), choices.end(), raw.text);
+    if (!raw.is_list && place != choices.end()) {
+      value = static_cast<double>(place - choices.begin());
+      word = raw.text;
+      return;
+    }
+    const std::string nearest = raw.is_list ? std::string() : nearest_word(raw.text, choices);
+    report(raw.where,
+           fmt::format(
+               "expected {}, found {}{}, for parameter '{}'", alternatives(choices), found(raw),
+               nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest), declared.name),
+           raw.text);
+  }
+
+  void numbers(const ParameterDeclaration& declared, const RawValue& raw,
+               std::vector<double>& values) {
+    const std::vector<std::string> items =
+        raw.is_list ? raw.list : std::vector<std::string>{raw.text};
+    std::vector<double> result(items.size(), declared.fallback);
+    bool good = !items.empty();
+    if (!good)
+      report(raw.where, fmt::format("the list is empty for parameter '{}'", declared.name), "");
+    for (std::size_t i = 0; i < items.size(); ++i)
+      good = number(declared, items[i], raw.where, result[i]) && good;
+    if (good) values = std::move(result);
+  }
+
+  static std::string found(const RawValue& raw) {
+    return raw.is_list ? fmt::format("a list of {}", raw.list.size())
+                       : fmt::format("'{}'", raw.text);
+  }
+
+ private:
+  bool in_range(const ParameterDeclaration& declared, double value, const std::string& text,
+                const Location& where) {
+    if (declared.low == declared.high || (value >= declared.low && value <= declared.high))
+      return true;
+    report(where,
+           fmt::format("'{}' = {} must be between {} and {}", declared.name,
+                       with_units(value, declared.units), shortest(declared.low),
+                       with_units(declared.high, declared.units)),
+           text);
+    return false;
+  }
+
+  const OperatorBlock& block_;
+  const Constants& constants_;
+  Problems& problems_;
+};
+
+void set_defaults(std::span<const ParameterDeclaration> declared, ParameterValues& values) {
+  for (const ParameterDeclaration& parameter : declared) {
+    const bool is_choice = parameter.type == ParameterType::choice;
+    values.number.push_back(is_choice ? 0 : parameter.fallback);
+    values.text.push_back(is_choice && !parameter.choices.empty() ? parameter.choices.front()
+                                                                  : parameter.text_fallback);
+    values.list.emplace_back();
+    if (parameter.type == ParameterType::numbers) values.list.back() = {parameter.fallback};
+    values.given.push_back(false);
+  }
+}
+
+}  // namespace
+
+ParameterValues validate_parameters(const OperatorBlock& block,
+                                    std::span<const ParameterDeclaration> declared,
+                                    const Constants& constants, Problems& problems) {
+  ParameterValues values;
+  set_defaults(declared, values);
+  Checker checker(block, constants, problems);
+  std::vector<std::string> names;
+  for (const ParameterDeclaration& parameter : declared) names.push_back(parameter.name);
+  for (const auto& [name, raw] : block.parameters) {
+    if (name.starts_with("x-")) continue;
+    const auto place = std::find(names.begin(), names.end(), name);
+    if (place == names.end()) {
+      const std::string nearest = nearest_word(name, names);
+      problems.add(raw.key_where,
+                   fmt::format("operator '{}' has no parameter '{}'; {}", block.name, name,
+                               !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+                               : names.empty()  ? std::string("it has none")
+                                                : "it has " + alternatives(names)),
+                   character_count(name));
+      continue;
+    }
+    const auto i = static_cast<std::size_t>(place - names.begin());
+    const ParameterDeclaration& parameter = declared[i];
+    values.given[i] = true;
+    if (parameter.type == ParameterType::integer)
+      checker.integer(parameter, raw, values.number[i]);
+    else if (parameter.type == ParameterType::toggle)
+      checker.toggle(parameter, raw, values.number[i]);
+    else if (parameter.type == ParameterType::choice)
+      checker.choice(parameter, raw, values.number[i], values.text[i]);
+    else if (parameter.type == ParameterType::numbers)
+      checker.numbers(parameter, raw, values.list[i]);
+    else if (raw.is_list)
+      checker.report(raw.where,
+                     fmt::format("expected one value, found {}, for parameter '{}'",
+                                 Checker::found(raw), name),
+                     "");
+    else if (parameter.type == ParameterType::text)
+      values.text[i] = raw.text;
+    else
+      checker.number(parameter, raw.text, raw.where, values.number[i]);
+  }
+  for (const auto& [name, raw] : block.parameters) {
+    const auto place = std::find(names.begin(), names.end(), name);
+    if (place == names.end()) continue;
+    const auto& condition = declared[static_cast<std::size_t>(place - names.begin())].when;
+    if (!condition_holds(condition, declared, values))
+      problems.add(raw.key_where,
+                   fmt::format("parameter '{}' of operator '{}' means something only when {}", name,
+                               block.name, condition),
+                   character_count(name));
+  }
+  return values;
+}
+
+bool condition_holds(const std::string& condition, std::span<const ParameterDeclaration> declared,
+                     const ParameterValues& values) {
+  std::istringstream words(condition);
+  std::string name, comparison, literal, joint;
+  while (words >> name >> comparison >> literal) {
+    const auto parameter =
+        std::find_if(declared.begin(), declared.end(),
+                     [&](const ParameterDeclaration& other) { return other.name == name; });
+    if (parameter == declared.end()) return false;
+    const auto i = static_cast<std::size_t>(parameter - declared.begin());
+    bool equal = false;
+    if (parameter->type == ParameterType::choice || parameter->type == ParameterType::text)
+      equal = values.text[i] == literal;
+    else if (parameter->type == ParameterType::toggle)
+      equal = read_switch(literal) == (values.number[i] != 0);
+    else if (const auto number = split_quantity(literal))
+      equal = number->number == values.number[i];
+    if (equal != (comparison == "==")) return false;
+    words >> joint;
+  }
+  return true;
+}
+
+}  // namespace pileus::scene
