@@ -29,7 +29,10 @@ endif()
 add_library(pileus_build INTERFACE)
 target_compile_options(
   pileus_build INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                         -Wno-psabi -ffp-contract=off -fno-math-errno)
+                         -Wno-psabi -ffp-contract=off -fno-math-errno
+                         # GCC 12 warns about joining std::string temporaries for no reason
+                         # (its bug 105651).
+                         $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(PILEUS_WARNINGS_AS_ERRORS)
   target_compile_options(pileus_build INTERFACE -Werror)
 endif()
