@@ -13,11 +13,12 @@ template <int D>
 void wrap(Store& store, const mesh::Grid<D>& grid, std::size_t p) {
   for (int a = 0; a < D - 1; ++a) {
     double& x = store.position(a)[p];
-    const double offset = x - grid.lower[a];
-    if (offset >= 0 && offset < grid.extent[a]) continue;
-    x = grid.lower[a] + (offset - grid.extent[a] * std::floor(offset / grid.extent[a]));
+    const double lower = grid.lower[a], upper = lower + grid.extent[a];
+    if (x >= lower && x < upper) continue;
+    const double offset = x - lower;
+    x = lower + (offset - grid.extent[a] * std::floor(offset / grid.extent[a]));
     // Rounded up to the seam or below it; a value that is not a number stays one, to be noticed.
-    if (x >= grid.lower[a] + grid.extent[a] || x < grid.lower[a]) x = grid.lower[a];
+    if (x >= upper || x < lower) x = lower;
   }
 }
 
