@@ -44,6 +44,25 @@ Levels levels_of(int block, int nz) {
 
 }  // namespace
 
+/// Working columns of one mode; a complex column is two adjacent real ones.
+struct Inversion2D::Columns {
+  double* packed;  // as long as packed columns
+  double *zeta, *psi, *psi_z, *spare;
+  double* coefficients;  // of ζ, ψ and ψ_z
+  double ends[2][2];     // of Re ζ, Im ζ at the lower and upper wall
+
+  Columns(double* work, std::size_t stride, std::size_t pitch)
+      : packed(work),
+        zeta(packed + 2 * stride),
+        psi(zeta + 2 * pitch),
+        psi_z(psi + 2 * pitch),
+        spare(psi_z + 2 * pitch),
+        coefficients(spare + 2 * pitch) {}
+  static std::size_t doubles(std::size_t stride, std::size_t pitch) {
+    return 2 * stride + 14 * pitch;
+  }
+};
+
 Inversion2D::Inversion2D(const Grid<2>& grid, const FlowOptions& options)
     : grid_(grid),
       options_(options),
@@ -55,8 +74,8 @@ Inversion2D::Inversion2D(const Grid<2>& grid, const FlowOptions& options)
       vorticity_(std::size_t(grid.nx()) * std::size_t(levels_)),
       flow_(std::size_t(grid.nx()) * std::size_t(slot::count * levels_)),
       block_summary_(std::size_t(blocks_)) {
-  const std::size_t modes = 16 * aligned_doubles(std::size_t(levels_));
-  scratch_ = ThreadScratch(std::max(2 * aligned_doubles(out_.doubles()), modes));
+  scratch_ = ThreadScratch(std::max(2 * aligned_doubles(out_.doubles()),
+                                    Columns::doubles(std::size_t(levels_), basis_.pitch())));
   vorticity_.fill(0);
   flow_.fill(0);
 }
@@ -111,6 +130,36 @@ void Inversion2D::transform_levels(const double* deposited, int block) {
                 block_levels * sizeof(double));
 }
 
+void Inversion2D::invert(const EndFunctions& ends, Columns& c) const {
+  const std::size_t p = basis_.pitch(), top = std::size_t(grid_.nz());
+  for (std::size_t part = 0; part < 2; ++part) {
+    double* f = c.zeta + part * p;
+    const double lower = c.ends[part][0] = f[0], upper = c.ends[part][1] = f[top];
+    for (std::size_t z = 0; z < p; ++z) f[z] -= lower * ends.lower[z] + upper * ends.upper[z];
+  }
+  basis_.sine_analysis().apply(c.zeta, c.coefficients, 2);
+  for (std::size_t part = 0; part < 2; ++part) {
+    double *zeta = c.coefficients + part * p, *psi = zeta + 2 * p, *psi_z = psi + 2 * p;
+    for (std::size_t m = 0; m < p; ++m) {
+      if (options_.filter) zeta[m] *= basis_.filter()[m];
+      psi[m] = zeta[m] * ends.inverse_laplacian[m];
+      psi_z[m] = psi[m] * basis_.wavenumber()[m];
+    }
+  }
+  basis_.sine_synthesis().apply(c.coefficients, c.zeta, 2);
+  basis_.sine_synthesis().apply(c.coefficients + 2 * p, c.psi, 2);
+  basis_.cosine_synthesis().apply(c.coefficients + 4 * p, c.psi_z, 2);
+  for (std::size_t part = 0; part < 2; ++part) {
+    const double lower = c.ends[part][0], upper = c.ends[part][1];
+    double *zeta = c.zeta + part * p, *psi = c.psi + part * p, *psi_z = c.psi_z + part * p;
+    for (std::size_t z = 0; z < p; ++z) {
+      zeta[z] += lower * ends.lower[z] + upper * ends.upper[z];
+      psi[z] += lower * ends.lower_inverse[z] + upper * ends.upper_inverse[z];
+      psi_z[z] += lower * ends.lower_inverse_z[z] + upper * ends.upper_inverse_z[z];
+    }
+  }
+}
+
 void Inversion2D::solve_mode(int i) {
   double* out = flow_.data() + flow_column(i);
   const int nx = grid_.nx();
@@ -120,71 +169,38 @@ void Inversion2D::solve_mode(int i) {
     return;
   }
   double* out_conjugate = flow_.data() + flow_column(nx - i);
-  double* work = scratch_.mine();
-  double *zeta = work, *series = work + 2 * stride, *coefficients = series + 2 * p;
-  double *psi = coefficients + 4 * p, *psi_z = psi + 2 * p;
   const double k = derivative_wavenumber(i, nx, grid_.extent[0]);
   const double filter = options_.filter ? hou_li_factor(2.0 * i / nx) : 1;
+  Columns c(scratch_.mine(), stride, p);
   unpack_mode(vorticity_.data() + vorticity_column(i), vorticity_.data() + vorticity_column(nx - i),
-              levels_, filter / nx, zeta, zeta + stride);
-
-  const EndFunctions ends = basis_.end_functions(basis_.find(k * k));
-  const auto top = std::size_t(grid_.nz());
-  for (std::size_t part = 0; part < 2; ++part) {
-    const double* f = zeta + part * stride;
-    double* s = series + part * p;
-    std::fill_n(s, p, 0.0);
-    for (std::size_t z = 0; z <= top; ++z)
-      s[z] = f[z] - f[0] * ends.lower[z] - f[top] * ends.upper[z];
-  }
-  basis_.sine_analysis().apply(series, coefficients, 2);
-  for (std::size_t part = 0; part < 2; ++part) {
-    double* c = coefficients + part * p;
-    double* c_z = c + 2 * p;
-    for (std::size_t m = 0; m < p; ++m) {
-      if (options_.filter) c[m] *= basis_.filter()[m];
-      series[part * p + m] = c[m];
-      c[m] *= ends.inverse_laplacian[m];
-      c_z[m] = c[m] * basis_.wavenumber()[m];
-    }
-  }
-  basis_.sine_synthesis().apply(coefficients, psi, 2);
-  basis_.cosine_synthesis().apply(coefficients + 2 * p, psi_z, 2);
-  basis_.sine_synthesis().apply(series, coefficients, 2);
-
-  double* result = coefficients + 2 * p;  // two columns, free by now
-  const auto put = [&](int index, double factor, const double* real, const double* imaginary) {
-    std::fill_n(zeta, 2 * stride, 0.0);
-    for (std::size_t z = 0; z <= top; ++z) {
-      zeta[z] = factor * real[z];
-      zeta[stride + z] = factor * imaginary[z];
-    }
+              levels_, filter / nx, c.packed, c.packed + stride);
+  // Blocks of levels and padded columns end differently.
+  const std::size_t shared = std::min(stride, p);
+  const auto put = [&](int index, double factor, const double* column) {
+    for (std::size_t part = 0; part < 2; ++part)
+      for (std::size_t z = 0; z < shared; ++z)
+        c.packed[part * stride + z] = factor * column[part * p + z];
     const auto at = std::size_t(index) * stride;
-    pack_mode(zeta, zeta + stride, levels_, out + at, out_conjugate + at);
+    pack_mode(c.packed, c.packed + stride, levels_, out + at, out_conjugate + at);
+  };
+  const auto put_x_derivative = [&](int index, double factor, const double* column) {
+    for (std::size_t z = 0; z < p; ++z) {
+      c.spare[z] = -column[p + z];
+      c.spare[p + z] = column[z];
+    }
+    put(index, factor * k, c.spare);
   };
   for (std::size_t part = 0; part < 2; ++part) {
-    const double lower = zeta[part * stride], upper = zeta[part * stride + top];
-    for (std::size_t z = 0; z <= top; ++z) {
-      psi[part * p + z] += lower * ends.lower_inverse[z] + upper * ends.upper_inverse[z];
-      psi_z[part * p + z] += lower * ends.lower_inverse_z[z] + upper * ends.upper_inverse_z[z];
-      result[part * p + z] =
-          coefficients[part * p + z] + lower * ends.lower[z] + upper * ends.upper[z];
-    }
+    std::fill_n(c.zeta + part * p, p, 0.0);
+    std::copy_n(c.packed + part * stride, shared, c.zeta + part * p);
+    std::fill_n(c.packed + part * stride, stride, 0.0);
   }
-  put(slot::u, -1, psi_z, psi_z + p);
-  put(slot::zeta, 1, result, result + p);
-  // Multiplication by ik takes (real, imaginary) to k (−imaginary, real).
-  for (std::size_t z = 0; z <= top; ++z) {
-    result[z] = -psi[p + z];
-    result[p + z] = psi[z];
-  }
-  put(slot::w, k, result, result + p);
-  put(slot::w_x, -k * k, psi, psi + p);
-  for (std::size_t z = 0; z <= top; ++z) {
-    result[z] = psi_z[p + z];
-    result[p + z] = -psi_z[z];
-  }
-  put(slot::u_x, k, result, result + p);
+  invert(basis_.end_functions(basis_.find(k * k)), c);
+  put(slot::u, -1, c.psi_z);
+  put_x_derivative(slot::u_x, -1, c.psi_z);
+  put_x_derivative(slot::w, 1, c.psi);
+  put(slot::w_x, -k * k, c.psi);
+  put(slot::zeta, 1, c.zeta);
 }
 
 void Inversion2D::solve_mean(double wind) {

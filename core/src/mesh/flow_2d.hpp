@@ -23,7 +23,9 @@ class Inversion2D {
   std::size_t allocated_bytes() const;
 
  private:
+  struct Columns;
   void transform_levels(const double* deposited, int block);
+  void invert(const EndFunctions& ends, Columns& columns) const;
   void solve_mode(int i);
   void solve_mean(double wind);
   void finish_levels(int block, double* flow, FlowSummary* summary);

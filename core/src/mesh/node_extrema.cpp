@@ -34,23 +34,47 @@ inline double larger(double a, double b) {
 
 }  // namespace
 
+namespace {
+
+constexpr int lanes = 8;
+
+/// Running maxima of as many levels as a vector has lanes; `poison` keeps a NaN once there was one,
+/// which a comparison would drop.
+struct StrainMaxima {
+  double largest[lanes] = {};
+  double poison[lanes] = {};
+};
+
+[[gnu::always_inline]] inline void take_levels(const GradientColumns& g, int begin, int count,
+                                               StrainMaxima& m) {
+  for (int n = 0; n < count; ++n) {
+    const int k = begin + n;
+    const double u_z = g.w_x[k] + g.eta[k], v_z = g.w_y[k] - g.xi[k];
+    const double radius = spectral_radius(g.u_x[k], g.v_y[k], 0.5 * (g.u_y[k] + g.v_x[k]),
+                                          0.5 * (u_z + g.w_x[k]), 0.5 * (v_z + g.w_y[k]));
+    m.largest[n] = larger(radius, m.largest[n]);
+    m.poison[n] += 0 * radius;
+  }
+}
+
+}  // namespace
+
 PILEUS_VECTOR_CLONES
 double largest_strain(const GradientColumns& g) {
-  // Eight running maxima, so that the loop needs no reduction across a vector.
-  double largest[8] = {};
-  for (int begin = 0; begin < g.levels; begin += 8) {
-    const int count = g.levels - begin < 8 ? g.levels - begin : 8;
-    for (int n = 0; n < count; ++n) {
-      const int k = begin + n;
-      const double u_z = g.w_x[k] + g.eta[k], v_z = g.w_y[k] - g.xi[k];
-      const double radius = spectral_radius(g.u_x[k], g.v_y[k], 0.5 * (g.u_y[k] + g.v_x[k]),
-                                            0.5 * (u_z + g.w_x[k]), 0.5 * (v_z + g.w_y[k]));
-      largest[n] = larger(radius, largest[n]);
-    }
+  StrainMaxima m;
+  int begin = 0;
+  for (; begin + lanes <= g.levels; begin += lanes) take_levels(g, begin, lanes, m);
+  // A maximum does not mind levels taken twice.
+  if (begin < g.levels && g.levels >= lanes)
+    take_levels(g, g.levels - lanes, lanes, m);
+  else
+    take_levels(g, begin, g.levels - begin, m);
+  double result = 0, poison = 0;
+  for (int n = 0; n < lanes; ++n) {
+    result = larger(m.largest[n], result);
+    poison += m.poison[n];
   }
-  double result = 0;
-  for (const double value : largest) result = larger(value, result);
-  return result;
+  return result + poison;
 }
 
 PILEUS_VECTOR_CLONES
@@ -71,7 +95,7 @@ double largest_magnitude(const double* f, int count) {
 }
 
 void merge_extrema(FlowSummary& into, const FlowSummary& from) {
-  into.strain = larger(from.strain, into.strain);
+  if (!(from.strain <= into.strain) && !std::isnan(into.strain)) into.strain = from.strain;
   into.buoyancy_gradient = larger(from.buoyancy_gradient, into.buoyancy_gradient);
   into.vorticity = larger(from.vorticity, into.vorticity);
   for (std::size_t d = 0; d < into.speed.size(); ++d)

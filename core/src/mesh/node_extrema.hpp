@@ -10,14 +10,15 @@ struct GradientColumns {
   int levels;
 };
 
-/// Largest |eigenvalue| of the symmetric traceless part of ∇u over the column (s⁻¹).
+/// Largest |eigenvalue| of the symmetric part of ∇u, whose trace is zero, over the column (s⁻¹);
+/// NaN if any entry is, so that a broken flow cannot pass for a calm one.
 double largest_strain(const GradientColumns& g);
 /// Largest ξ² + η² + ζ² over the column (s⁻²).
 double largest_squared_vorticity(const GradientColumns& g);
 /// Largest |f| of `count` values.
 double largest_magnitude(const double* f, int count);
 
-/// Takes the larger of every extremum.
+/// Takes the larger of every extremum; a strain that is not a number stays so.
 void merge_extrema(FlowSummary& into, const FlowSummary& from);
 
 }  // namespace pileus::mesh

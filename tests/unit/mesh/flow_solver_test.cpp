@@ -82,6 +82,13 @@ TEST(FlowSolver, WallFlagKeepsVerticalVorticityZero) {
   EXPECT_GT(free_wall, 1e-3);
 }
 
+TEST(FlowSolver, BrokenFlowDoesNotPassForACalmOne) {
+  SampledFlow<3> s(Grid<3>({6, 6, 12}, {0, 0, 0}, {1, 1, 1}));
+  s.sample_noise(9);
+  s.deposit(3, 4, 5)[DepositRecord<3>::vorticity] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(s.solve(FlowOptions{}).strain));
+}
+
 TEST(FlowSolver, BuoyancyGradientIncludesTheReference) {
   SampledFlow<3> s(Grid<3>({4, 4, 6}, {0, 0, 0}, {1, 1, 3}));
   s.sample(
