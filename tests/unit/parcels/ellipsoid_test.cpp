@@ -123,7 +123,8 @@ TEST(PrincipalAxes, UnitsOfLengthDoNotMatter) {
   for (int draw = 0; draw < 1000; ++draw) {
     const Matrix3d b =
         testing::random_shape<3>(random, Vector3d(testing::uniform(random, 0.1, 4), 1, 0.2));
-    for (const double length2 : {1e24, 1e-24, 1e100, 1e-100}) expect_axes_of(Matrix3d(length2 * b), rounding);
+    for (const double length2 : {1e24, 1e-24, 1e100, 1e-100})
+      expect_axes_of(Matrix3d(length2 * b), rounding);
     const auto here = principal_axes(symmetric(b)),
                there = principal_axes(symmetric(Matrix3d(0x1p-80 * b)));
     EXPECT_EQ(0x1p-80 * here.a2, there.a2);
