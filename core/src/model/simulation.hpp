@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/phase_timer.hpp"
+#include "coupling/operator_sequence.hpp"
 #include "dynamics/time_step.hpp"
 #include "dynamics/transport.hpp"
 #include "mesh/grid.hpp"
@@ -25,10 +26,14 @@ namespace pileus::model {
 /// What happens to the parcels besides transport: the planned operators.
 class Physics : public dynamics::BuoyancySource {
  public:
-  /// Advances all operators by `dt` from `time`, after the stages of step number `step`.
-  virtual void apply(parcels::Store& store, double time, double dt, std::uint64_t step) = 0;
+  /// Operators before the stages of step number `step` of length `dt` from `time`; whether any ran.
+  virtual bool apply_before(parcels::Store& store, double time, double dt, std::uint64_t step) = 0;
+  /// Operators after the stages.
+  virtual void apply_after(parcels::Store& store, double time, double dt, std::uint64_t step) = 0;
+  /// Parcels were merged, split and reordered.
+  virtual void population_changed() = 0;
   /// Largest step the operators allow (s), infinity when they do not care.
-  virtual double largest_step(parcels::Store& store, double time, std::uint64_t step) = 0;
+  virtual double largest_step() = 0;
 };
 
 /// What a finished step did.
@@ -37,9 +42,9 @@ struct StepReport {
   parcels::UpkeepCounts upkeep;
 };
 
-/// Dimension-blind face of a simulation. The cycle is: evaluate(); begin_step(dt); finish_step();
-/// evaluate(); … where evaluate() gives the flow of the present state, and velocity() is valid
-/// between begin_step() (or probe()) and finish_step().
+/// Dimension-blind face of a simulation. The cycle is: evaluate(); begin_step(until);
+/// finish_step(); evaluate(); … where evaluate() gives the flow of the present state, and
+/// velocity() is valid between begin_step() (or probe()) and finish_step().
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -55,7 +60,8 @@ class Simulation {
   virtual void evaluate() = 0;
   /// The step the flow and the operators allow; after evaluate().
   virtual dynamics::TimeStep allowed_step() = 0;
-  virtual void begin_step(double dt) = 0;
+  /// Takes the first stage of the step that ends at `until` (s).
+  virtual void begin_step(double until) = 0;
   virtual StepReport finish_step() = 0;
   virtual void probe() = 0;
 
@@ -69,6 +75,10 @@ class Simulation {
   virtual int dimension() const = 0;
   virtual double domain_volume() const = 0;
   virtual double cell_volume() const = 0;
+  virtual double bottom() const = 0;  // m
+  virtual double height() const = 0;  // m
+  /// The mesh as plugins see it.
+  virtual pileus_grid plugin_grid() const = 0;
   virtual std::vector<output::Axis> axes() const = 0;
   /// Nodes in file order (z slowest, x fastest): horizontal count times n_z + 1.
   virtual std::size_t node_count() const = 0;
@@ -100,7 +110,7 @@ class Simulation {
 
  protected:
   std::unique_ptr<parcels::Store> store_;
-  double time_ = 0, dt_ = 0;
+  double time_ = 0, dt_ = 0, until_ = 0;
   std::uint64_t step_ = 0;
   dynamics::MeanWind wind_;
   PhaseTimes times_;

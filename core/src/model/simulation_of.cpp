@@ -168,16 +168,23 @@ dynamics::TimeStep SimulationOf<D>::allowed_step() {
   dynamics::TimeStep allowed =
       dynamics::choose_time_step<D>(step_control_, grid_, flow_summary_, background_.coriolis[2]);
   if (!step_control_.fixed) {
-    const double physics = buoyancy_.physics.largest_step(*store_, time_, step_);
+    const double physics = buoyancy_.physics.largest_step();
     if (physics < allowed.seconds) allowed = {physics, "operator"};
   }
   return allowed;
 }
 
 template <int D>
-void SimulationOf<D>::begin_step(double dt) {
-  dt_ = dt;
-  transport_->begin_step(*store_, wind_, dt, times_);
+void SimulationOf<D>::begin_step(double until) {
+  until_ = until;
+  dt_ = until - time_;
+  bool changed;
+  {
+    const PhaseScope scope(times_, Phase::operators);
+    changed = buoyancy_.physics.apply_before(*store_, time_, dt_, step_);
+  }
+  if (changed) evaluate();
+  transport_->begin_step(*store_, wind_, dt_, times_);
 }
 
 template <int D>
@@ -187,16 +194,17 @@ StepReport SimulationOf<D>::finish_step() {
   transport_->finish_step(*store_, buoyancy_, tile_begin_, wind_, time_, dt_, times_);
   {
     const PhaseScope scope(times_, Phase::operators);
-    buoyancy_.physics.apply(*store_, time_, dt_, step_);
+    buoyancy_.physics.apply_after(*store_, time_, dt_, step_);
   }
   report.upkeep = upkeep_.run(*store_, transport_->offsets(), step_, times_);
   tile_begin_ = upkeep_.tile_begin();
+  buoyancy_.physics.population_changed();
   {
     const PhaseScope scope(times_, Phase::correction);
     transport_->offsets().update(*store_);
     correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit());
   }
-  time_ += dt_;
+  time_ = until_;
   ++step_;
   return report;
 }

@@ -17,7 +17,7 @@ class SimulationOf final : public Simulation {
 
   void evaluate() override;
   dynamics::TimeStep allowed_step() override;
-  void begin_step(double dt) override;
+  void begin_step(double until) override;
   StepReport finish_step() override;
   void probe() override { transport_->probe(*store_, times_); }
 
@@ -29,6 +29,9 @@ class SimulationOf final : public Simulation {
   int dimension() const override { return D; }
   double domain_volume() const override { return grid_.domain_volume(); }
   double cell_volume() const override { return grid_.cell_volume(); }
+  double bottom() const override { return grid_.bottom(); }
+  double height() const override { return grid_.extent[D - 1]; }
+  pileus_grid plugin_grid() const override { return coupling::abi_grid(grid_); }
   std::vector<output::Axis> axes() const override;
   std::size_t node_count() const override {
     return grid_.columns() * static_cast<std::size_t>(grid_.nz() + 1);

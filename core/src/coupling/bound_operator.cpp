@@ -1,0 +1,94 @@
+#include "coupling/bound_operator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "coupling/quantity_plan.hpp"
+
+namespace pileus::coupling {
+namespace {
+
+void bind_slots(BoundOperator& bound, const parcels::Store& store) {
+  const host::OperatorTable& table = *bound.entry->table;
+  for (std::size_t i = 0; i < table.quantities.size(); ++i) {
+    const pileus_quantity& row = table.quantities[i];
+    BoundSlot slot;
+    slot.low = row.low;
+    slot.high = row.high;
+    slot.derived = row.nature == PILEUS_DERIVED;
+    slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
+    if (host::holds(table.quantity_when[i], bound.entry->values.numbers())) {
+      slot.column = find_column(store, row.name);
+      if (slot.column < 0) {
+        throw Error(ExitCode::usage,
+                    fmt::format("operator '{}' needs '{}', which parcels in {} dimensions do not "
+                                "have",
+                                bound.entry->name, row.name, store.dimension()));
+      }
+      if (!slot.derived) bound.read_columns.push_back(slot.column);
+      if (slot.writable) (slot.derived ? bound.derived : bound.written).push_back(i);
+    }
+    bound.slots.push_back(slot);
+  }
+}
+
+void bind_conditions(BoundOperator& bound) {
+  const host::OperatorTable& table = *bound.entry->table;
+  for (const pileus_condition& row : table.active_if) {
+    const int slot = table.find_quantity(row.quantity);
+    const int column = bound.slots[static_cast<std::size_t>(slot)].column;
+    if (column < 0) continue;  // a clause on a quantity that does not exist: see below
+    const double value = row.parameter != nullptr
+                             ? bound.entry->values.numbers()[table.find_parameter(row.parameter)]
+                             : row.value;
+    bound.conditions.push_back({column, row.clause, row.op, value});
+  }
+  // A comparison with an absent quantity is false, so its whole clause is.
+  for (const pileus_condition& row : table.active_if) {
+    if (bound.slots[static_cast<std::size_t>(table.find_quantity(row.quantity))].column >= 0)
+      continue;
+    std::erase_if(bound.conditions,
+                  [&](const BoundCondition& c) { return c.clause == row.clause; });
+  }
+  std::stable_sort(
+      bound.conditions.begin(), bound.conditions.end(),
+      [](const BoundCondition& a, const BoundCondition& b) { return a.clause < b.clause; });
+}
+
+void bind_budgets(BoundOperator& bound) {
+  const host::OperatorTable& table = *bound.entry->table;
+  for (std::size_t w = 0; w < bound.written.size(); ++w) {
+    const pileus_quantity& row = table.quantities[bound.written[w]];
+    if (row.budget == nullptr) continue;
+    const auto found = std::find(table.budgets.begin(), table.budgets.end(), row.budget);
+    bound.budgeted.push_back({w, static_cast<std::size_t>(found - table.budgets.begin()),
+                              row.nature != PILEUS_EXTENSIVE});
+  }
+}
+
+}  // namespace
+
+BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
+                            std::uint32_t stream, const std::atomic<bool>* stop) {
+  const std::uint32_t scope = entry.table->op.scope;
+  if (scope != PILEUS_LOCAL && scope != PILEUS_GLOBAL) {
+    throw Error(ExitCode::plugin,
+                fmt::format("operator '{}' works on whole cells or columns, which this version "
+                            "does not offer; it offers the scopes local and global",
+                            entry.name));
+  }
+  BoundOperator bound;
+  bound.entry = &entry;
+  bound.stream = stream;
+  bind_slots(bound, store);
+  bind_conditions(bound);
+  bind_budgets(bound);
+  bound.instance = std::make_unique<host::Instance>(entry.table, stop);
+  host::ParameterValues values = entry.values;
+  bound.instance->configure(values);
+  return bound;
+}
+
+}  // namespace pileus::coupling

@@ -1,0 +1,56 @@
+// An operator instance bound to the columns of a parcel store.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "coupling/operator_entry.hpp"
+#include "host/instance.hpp"
+#include "parcels/store.hpp"
+
+namespace pileus::coupling {
+
+/// A declared quantity and the column it stands for.
+struct BoundSlot {
+  int column = -1;       // −1: does not exist in this run
+  bool derived = false;  // written by diagnose; every other writable slot by apply
+  bool writable = false;
+  double low = 0, high = 0;
+};
+
+/// A comparison of an activity condition with its number filled in.
+struct BoundCondition {
+  int column = -1;
+  std::uint32_t clause = 0, comparison = 0;
+  double value = 0;
+};
+
+/// A written quantity that belongs to a budget.
+struct BudgetedSlot {
+  std::size_t written = 0;  // position in `written`
+  std::size_t budget = 0;   // position in the operator's budgets
+  bool per_volume = false;  // intensive: the amount is volume times value
+};
+
+struct BoundOperator {
+  const OperatorEntry* entry = nullptr;
+  std::unique_ptr<host::Instance> instance;
+  std::uint32_t stream = 0;
+  std::vector<BoundSlot> slots;            // by slot number
+  std::vector<std::size_t> written;        // slots that apply writes
+  std::vector<std::size_t> derived;        // slots that diagnose writes
+  std::vector<BoundCondition> conditions;  // sorted by clause; empty: always active
+  std::vector<BudgetedSlot> budgeted;
+  std::vector<int> read_columns;  // whose change makes diagnose or the conditions stale
+
+  const pileus_operator& op() const { return entry->table->op; }
+  bool is_local() const { return op().scope == PILEUS_LOCAL; }
+};
+
+/// Binds an operator to the store's columns.
+/// Errors  Error(ExitCode::usage) if a quantity has no column in this store (y_position in 2D), or
+///         the scope is not offered
+BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
+                            std::uint32_t stream, const std::atomic<bool>* stop);
+
+}  // namespace pileus::coupling

@@ -1,0 +1,62 @@
+// What the operators of a run cost, skipped and brought about.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/services.hpp"
+
+namespace pileus::coupling {
+
+/// Sum with a running correction (Neumaier 1974, doi:10.1002/zamm.19740540106): the rounding error
+/// does not grow with the number of terms.
+class CompensatedSum {
+ public:
+  CompensatedSum() = default;
+  CompensatedSum(double total, double correction) : total_(total), correction_(correction) {}
+  void add(double term) {
+    const double total = total_ + term;
+    const bool larger = (total_ < 0 ? -total_ : total_) >= (term < 0 ? -term : term);
+    correction_ += larger ? (total_ - total) + term : (term - total) + total_;
+    total_ = total;
+  }
+  double value() const { return total_ + correction_; }
+  double total() const { return total_; }
+  double correction() const { return correction_; }
+
+ private:
+  double total_ = 0, correction_ = 0;
+};
+
+/// One budget under one operator, since the start of the run, in the budget's unit times volume.
+struct OperatorBudget {
+  std::string budget;
+  double change = 0;  // by the operator's writes
+  double source = 0;  // of it, declared as brought in from outside
+  double defect() const { return change - source; }
+};
+
+struct OperatorLedger {
+  std::string name, id, version;
+  bool closure = false;
+  std::uint64_t calls = 0;    // of hooks on blocks
+  std::uint64_t parcels = 0;  // handed over, summed over calls
+  std::uint64_t skipped = 0;  // found inactive
+  std::uint64_t retries = 0;
+  double core_seconds = 0;  // summed over threads
+  std::vector<OperatorBudget> budgets;
+  std::vector<host::Span> spans;  // timers of the plugin's own
+};
+
+/// Total of a closed sum over all parcels.
+struct BudgetTotal {
+  std::string budget;
+  double total = 0;
+};
+
+struct Ledger {
+  std::vector<OperatorLedger> operators;
+  std::vector<BudgetTotal> totals;
+};
+
+}  // namespace pileus::coupling

@@ -1,0 +1,146 @@
+// The operators of a run in their declared order: what they need, when they are called, what they
+// brought about. Transport is the core's own and innermost:
+//
+//   lie      transport, then the operators from the last of the order to the first
+//   strang   the operators in order for half a step, transport, in reverse order for half a step
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupling/block_runner.hpp"
+#include "coupling/failure.hpp"
+#include "coupling/ledger.hpp"
+#include "coupling/operator_entry.hpp"
+#include "coupling/operator_progress.hpp"
+#include "coupling/quantity_plan.hpp"
+#include "mesh/grid.hpp"
+#include "parcels/store.hpp"
+#include "scene/scene.hpp"
+
+namespace pileus::coupling {
+
+/// The core's own part of a step, as it may be named in coupling.order.
+inline constexpr const char* transport_name = "transport";
+
+/// The moment a call happens at.
+struct StepTime {
+  std::uint64_t number = 0;  // of the step
+  double time = 0;           // s, its beginning
+  double dt = 0;             // s, the whole step
+};
+
+struct SequenceOptions {
+  scene::Coupling coupling;
+  std::vector<std::string> initial;  // scalars the initial state sets
+  std::uint64_t seed = 0;
+  const std::atomic<bool>* stop = nullptr;  // answers the plugins' should_stop
+  bool skip_inactive = true;                // false: call operators on every parcel
+};
+
+/// The grid record plugins see.
+template <int D>
+pileus_grid abi_grid(const mesh::Grid<D>& grid) {
+  pileus_grid abi{};
+  abi.dimension = D;
+  for (int axis = 0; axis < 3; ++axis) abi.cells[axis] = 1;
+  for (int d = 0; d < D; ++d) {
+    const int axis = d == D - 1 ? 2 : d;
+    abi.cells[axis] = grid.cells[d];
+    abi.origin[axis] = grid.lower[d];
+    abi.spacing[axis] = grid.spacing[d];
+    abi.periodic[axis] = d == D - 1 ? 0 : 1;
+  }
+  return abi;
+}
+
+class OperatorSequence {
+ public:
+  /// Plans quantities and order. Errors  Error(ExitCode::usage) with every contradiction
+  OperatorSequence(std::vector<OperatorEntry> operators, SequenceOptions options);
+  ~OperatorSequence();
+  OperatorSequence(const OperatorSequence&) = delete;
+  OperatorSequence& operator=(const OperatorSequence&) = delete;
+
+  /// The scalars to build the store with.
+  const std::vector<parcels::Scalar>& required_scalars() const { return plan_.scalars; }
+  /// True if an operator derives the buoyancy; else it is carried by the parcels.
+  bool derives_buoyancy() const;
+  bool empty() const { return operators_.empty(); }
+  const std::vector<OperatorEntry>& operators() const { return operators_; }
+  /// Names of the operators with an apply hook, outermost first.
+  std::vector<std::string> order() const;
+
+  /// Creates and configures the instances on the columns of `store`, which must outlive this.
+  /// Errors  Error(ExitCode::plugin) if a plugin refuses its parameters
+  void bind(parcels::Store& store, const std::optional<pileus_grid>& grid);
+
+  /// Starts a new run: owned quantities get their declared value, except those of `initial`, and
+  /// the plugins' init hooks are called. Then diagnoses.
+  void init(const StepTime& step);
+  /// Starts from a checkpoint whose state is in the store. Then diagnoses.
+  void resume(const StepTime& step);
+
+  /// Brings every derived quantity up to date with parcels that have moved. Every stage.
+  void diagnose(const StepTime& step);
+  /// Whether apply_before_transport does anything: some operator advances in half steps.
+  bool splits_around_transport() const;
+  /// Operators before the transport of a step (Strang only).
+  void apply_before_transport(const StepTime& step);
+  /// Operators after the transport of a step. Derived quantities are up to date with what the
+  /// operators read, but need `diagnose` afterwards.
+  void apply_after_transport(const StepTime& step);
+  /// To be called after merge, split, sort: parcels are other ones than before.
+  void population_changed();
+
+  /// Largest step the operators can take with their most sub-steps, s; infinite without a limit.
+  double dt_limit() const;
+
+  /// Costs, counts and budgets since the start.
+  Ledger ledger() const;
+  /// The accumulated budgets as plain numbers for a checkpoint, and back after bind.
+  std::vector<double> books() const;
+  void restore_books(const std::vector<double>& books);
+
+ private:
+  void prepare_workspaces();
+  pileus_step step_record(const BoundOperator& bound, const StepTime& at, bool second_half) const;
+  void start(const StepTime& step, bool new_run);
+  void refresh(const StepTime& step);
+  void run_closures(const StepTime& step);
+  void match_threads();
+  void apply(std::size_t which, const StepTime& at, bool second_half);
+  bool skip_by_epoch(std::size_t which);
+  int prepare(std::size_t which, const StepTime& at, bool second_half);
+  void apply_once(std::size_t which, const pileus_step& step);
+  void close_books(std::size_t which, std::size_t blocks);
+  std::uint64_t version_of(const std::vector<int>& columns) const;
+  void touch_core();
+  void throw_first_failure();
+  [[noreturn]] void fail(const BlockFailure& failure, const char* phase);
+  std::size_t block_count() const;
+  ParcelRange block_range(std::size_t block) const;
+  ParcelRange all_parcels() const { return {-1, 0, store_->size()}; }
+
+  std::vector<OperatorEntry> operators_;
+  SequenceOptions options_;
+  QuantityPlan plan_;
+  std::vector<std::size_t> order_;  // operators with apply, outermost first
+  parcels::Store* store_ = nullptr;
+  std::optional<pileus_grid> grid_;
+  std::vector<BoundOperator> bound_;
+  std::unique_ptr<BlockRunner> runner_;
+  std::vector<std::size_t> stale_;          // closures to run now
+  std::vector<Workspace> workspaces_;       // per thread
+  Workspace whole_;                         // for calls with all parcels
+  std::vector<OperatorProgress> progress_;  // per operator
+  std::vector<BlockBooks> block_books_;     // per block and budget of the present call
+  std::vector<std::uint8_t> block_active_;  // per block: the present call did something
+  std::vector<std::uint64_t> versions_;     // per column, raised when it changes
+  std::uint64_t next_version_ = 1;
+};
+
+}  // namespace pileus::coupling

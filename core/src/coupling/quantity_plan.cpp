@@ -1,0 +1,247 @@
+#include "coupling/quantity_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "base/quantities.hpp"
+
+namespace pileus::coupling {
+namespace {
+
+/// A declaration of one quantity by one operator.
+struct Claim {
+  const OperatorEntry* by;
+  const pileus_quantity* row;
+  bool creates() const { return (row->access & PILEUS_CREATE) != 0; }
+};
+
+/// Claims by name, names in the order of their first appearance.
+struct Claims {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<Claim>> of;
+};
+
+class Planner {
+ public:
+  Planner(const std::vector<OperatorEntry>& operators, const std::vector<std::string>& initial)
+      : operators_(operators), initial_(initial.begin(), initial.end()) {}
+
+  QuantityPlan plan() {
+    collect();
+    for (const std::string& name : initial_) check_name(name, "the initial state");
+    QuantityPlan plan;
+    if (claims_.of.find(buoyancy_name) == claims_.of.end()) {
+      plan.scalars.push_back(passive(buoyancy_name));
+    }
+    for (const std::string& name : claims_.names) plan.scalars.push_back(unite(name));
+    for (const std::string& name : initial_) {
+      if (claims_.of.find(name) == claims_.of.end() && name != buoyancy_name) {
+        plan.scalars.push_back(passive(name));
+      }
+    }
+    plan.closures = order_closures();
+    if (!problems_.empty()) throw Error(ExitCode::usage, problems_);
+    return plan;
+  }
+
+ private:
+  void complain(const std::string& text) { problems_ += (problems_.empty() ? "" : "\n") + text; }
+
+  void collect() {
+    for (const OperatorEntry& entry : operators_) {
+      const host::OperatorTable& table = *entry.table;
+      for (std::size_t i = 0; i < table.quantities.size(); ++i) {
+        const pileus_quantity& row = table.quantities[i];
+        if (!host::holds(table.quantity_when[i], entry.values.numbers())) continue;
+        if (!check_support(entry, row) || is_core_quantity(row.name)) continue;
+        check_units(entry, row);
+        if (claims_.of.find(row.name) == claims_.of.end()) claims_.names.emplace_back(row.name);
+        claims_.of[row.name].push_back({&entry, &row});
+      }
+    }
+  }
+
+  bool check_support(const OperatorEntry& entry, const pileus_quantity& row) {
+    const auto refuse = [&](const char* what) {
+      complain(fmt::format("operator '{}' declares '{}' {}, which this version does not offer",
+                           entry.name, row.name, what));
+      return false;
+    };
+    if (row.place != PILEUS_PARCEL) return refuse("elsewhere than on the parcels");
+    if (row.type != PILEUS_F64 || row.components != 1) {
+      return refuse("as something other than one double-precision number per parcel");
+    }
+    if (row.nature == PILEUS_LABEL) return refuse("as a label");
+    if (row.on_merge != PILEUS_RULE_DEFAULT || row.on_split != PILEUS_RULE_DEFAULT) {
+      return refuse("with a merge or split rule of its own");
+    }
+    if (row.nature == PILEUS_INTENSIVE && std::string_view(row.weight) != volume_name) {
+      return refuse("with a weight other than the volume");
+    }
+    return true;
+  }
+
+  void check_name(const std::string& name, const std::string& who) {
+    if (find_quantity(name) != nullptr) return;
+    const std::string nearest = nearest_quantity(name);
+    complain(fmt::format("{} names the quantity '{}', which is not registered{}", who, name,
+                         nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  }
+
+  void check_units(const OperatorEntry& entry, const pileus_quantity& row) {
+    const std::string who = fmt::format("operator '{}'", entry.name);
+    check_name(row.name, who);
+    const Quantity* known = find_quantity(row.name);
+    if (known != nullptr && known->units != row.units) {
+      complain(fmt::format("{} declares '{}' in '{}', registered is '{}'", who, row.name, row.units,
+                           known->units));
+    }
+  }
+
+  static parcels::Scalar passive(const std::string& name) {
+    const Quantity* known = find_quantity(name);
+    parcels::Scalar scalar;
+    scalar.name = name;
+    scalar.units = known != nullptr ? known->units : "1";
+    scalar.low = std::numeric_limits<double>::lowest();
+    scalar.high = std::numeric_limits<double>::max();
+    return scalar;
+  }
+
+  static parcels::Nature nature_of(std::uint32_t nature) {
+    return nature == PILEUS_EXTENSIVE ? parcels::Nature::extensive
+           : nature == PILEUS_DERIVED ? parcels::Nature::derived
+                                      : parcels::Nature::intensive;
+  }
+
+  parcels::Scalar unite(const std::string& name) {
+    const std::vector<Claim>& claims = claims_.of.at(name);
+    const Claim* owner = nullptr;
+    const Claim* decisive = nullptr;  // the owner, or else the first that states a nature
+    for (const Claim& claim : claims) {
+      if (claim.creates()) {
+        if (owner != nullptr) {
+          complain(fmt::format("'{}' is owned by both '{}' and '{}'; remove one of the two", name,
+                               owner->by->name, claim.by->name));
+        }
+        owner = &claim;
+      }
+    }
+    for (const Claim& claim : claims) {
+      if (decisive == nullptr && claim.row->nature != 0) decisive = &claim;
+    }
+    if (owner != nullptr) decisive = owner;
+    check_source(name, claims.front(), owner);
+    parcels::Scalar scalar = passive(name);
+    if (decisive == nullptr) return scalar;
+    const pileus_quantity& row = *decisive->row;
+    for (const Claim& claim : claims) check_agreement(name, *decisive, claim);
+    scalar.nature = nature_of(row.nature);
+    scalar.budget = row.budget != nullptr ? row.budget : "";
+    scalar.low = row.low;
+    scalar.high = row.high;
+    scalar.initial = owner != nullptr && row.nature != PILEUS_DERIVED ? row.initial : 0.0;
+    return scalar;
+  }
+
+  void check_source(const std::string& name, const Claim& reader, const Claim* owner) {
+    const bool set = initial_.count(name) > 0;
+    if (owner == nullptr && !set) {
+      complain(
+          fmt::format("operator '{}' needs '{}', which no operator provides and the initial state "
+                      "does not set; "
+                      "add it to the scene's initial section",
+                      reader.by->name, name));
+    }
+    if (owner != nullptr && set && owner->row->nature == PILEUS_DERIVED) {
+      complain(fmt::format(
+          "the initial state sets '{}', which operator '{}' derives; set what it derives it from",
+          name, owner->by->name));
+    }
+  }
+
+  void check_agreement(const std::string& name, const Claim& decisive, const Claim& other) {
+    const std::uint32_t nature = other.row->nature;
+    if (nature == 0) return;
+    const char* a = decisive.row->budget != nullptr ? decisive.row->budget : "";
+    const char* b = other.row->budget != nullptr ? other.row->budget : "";
+    if (nature != decisive.row->nature || std::string_view(a) != b) {
+      complain(fmt::format("'{}' and '{}' disagree on what '{}' is (nature or budget)",
+                           decisive.by->name, other.by->name, name));
+    }
+  }
+
+  /// True if operator b derives something that operator a reads.
+  bool depends(std::size_t a, std::size_t b) const {
+    for (const auto& [name, claims] : claims_.of) {
+      bool reads = false, derives = false;
+      for (const Claim& claim : claims) {
+        const bool own = claim.creates() && claim.row->nature == PILEUS_DERIVED;
+        reads = reads || (claim.by == &operators_[a] && !own);
+        derives = derives || (claim.by == &operators_[b] && own);
+      }
+      if (reads && derives) return true;
+    }
+    return false;
+  }
+
+  std::vector<std::size_t> order_closures() {
+    std::vector<std::size_t> waiting, ordered;
+    for (std::size_t i = 0; i < operators_.size(); ++i) {
+      if (operators_[i].table->op.diagnose != nullptr) waiting.push_back(i);
+    }
+    while (!waiting.empty()) {
+      const auto ready = std::find_if(waiting.begin(), waiting.end(), [&](std::size_t a) {
+        return std::none_of(waiting.begin(), waiting.end(),
+                            [&](std::size_t b) { return a != b && depends(a, b); });
+      });
+      if (ready == waiting.end()) {
+        std::string names;
+        for (std::size_t i : waiting) names += (names.empty() ? "" : ", ") + operators_[i].name;
+        complain("these operators derive quantities from each other in a ring: " + names);
+        return ordered;
+      }
+      ordered.push_back(*ready);
+      waiting.erase(ready);
+    }
+    return ordered;
+  }
+
+  const std::vector<OperatorEntry>& operators_;
+  std::set<std::string> initial_;
+  Claims claims_;
+  std::string problems_;
+};
+
+}  // namespace
+
+QuantityPlan plan_quantities(const std::vector<OperatorEntry>& operators,
+                             const std::vector<std::string>& initial) {
+  return Planner(operators, initial).plan();
+}
+
+bool is_core_quantity(std::string_view name) {
+  static constexpr std::array<std::string_view, 15> names = {
+      height_name,   volume_name,   "x_position",  "y_position", "z_position",
+      "x_vorticity", "y_vorticity", "z_vorticity", "vorticity",  "B11",
+      "B12",         "B13",         "B22",         "B23",        "B33"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+int find_column(const parcels::Store& store, std::string_view name) {
+  if (name == height_name) return store.dimension() - 1;
+  if (name == volume_name) return store.dimension();
+  for (int c = 0; c < store.column_count(); ++c) {
+    if (store.column_name(c) == name) return c;
+  }
+  return -1;
+}
+
+}  // namespace pileus::coupling

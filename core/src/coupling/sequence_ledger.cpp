@@ -1,0 +1,98 @@
+#include <algorithm>
+
+#include "base/parallel.hpp"
+#include "coupling/operator_sequence.hpp"
+
+namespace pileus::coupling {
+namespace {
+
+/// Total over all parcels, added in an order that depends on their number alone.
+double total_of(const parcels::Store& store, const parcels::Scalar& scalar) {
+  const double* x = store.scalar(store.find_scalar(scalar.name));
+  const double* volume = store.volume();
+  const bool per_volume = scalar.nature == parcels::Nature::intensive;
+  const CompensatedSum sum = ordered_reduce(
+      store.size(), CompensatedSum{},
+      [&](std::size_t begin, std::size_t end) {
+        CompensatedSum part;
+        for (std::size_t i = begin; i < end; ++i) part.add(per_volume ? volume[i] * x[i] : x[i]);
+        return part;
+      },
+      [](CompensatedSum a, const CompensatedSum& b) {
+        a.add(b.value());
+        return a;
+      });
+  return sum.value();
+}
+
+}  // namespace
+
+Ledger OperatorSequence::ledger() const {
+  Ledger ledger;
+  for (std::size_t which = 0; which < operators_.size(); ++which) {
+    const host::OperatorTable& table = *operators_[which].table;
+    OperatorLedger entry;
+    entry.name = operators_[which].name;
+    entry.id = table.op.id;
+    entry.version = table.op.version;
+    entry.closure = table.op.form == PILEUS_CLOSURE;
+    OperatorCounts counts;
+    const auto collect = [&](const Workspace& work) {
+      if (which >= work.applied.size()) return;
+      counts.add(work.applied[which]);
+      counts.add(work.diagnosed[which]);
+    };
+    for (const Workspace& work : workspaces_) collect(work);
+    collect(whole_);
+    entry.calls = counts.calls;
+    entry.parcels = counts.parcels;
+    entry.skipped = counts.skipped;
+    entry.retries = counts.retries;
+    entry.core_seconds = counts.seconds;
+    for (std::size_t b = 0; b < table.budgets.size() && which < progress_.size(); ++b) {
+      entry.budgets.push_back({table.budgets[b], progress_[which].change[b].value(),
+                               progress_[which].source[b].value()});
+    }
+    if (which < bound_.size()) entry.spans = bound_[which].instance->spans();
+    ledger.operators.push_back(std::move(entry));
+  }
+  if (store_ == nullptr) return ledger;
+  for (const parcels::Scalar& scalar : store_->scalars()) {
+    if (scalar.budget.empty() || scalar.nature == parcels::Nature::derived) continue;
+    auto found = std::find_if(ledger.totals.begin(), ledger.totals.end(),
+                              [&](const BudgetTotal& t) { return t.budget == scalar.budget; });
+    if (found == ledger.totals.end()) {
+      found = ledger.totals.insert(ledger.totals.end(), {scalar.budget, 0.0});
+    }
+    found->total += total_of(*store_, scalar);
+  }
+  return ledger;
+}
+
+std::vector<double> OperatorSequence::books() const {
+  std::vector<double> numbers;
+  for (const OperatorProgress& progress : progress_) {
+    for (std::size_t b = 0; b < progress.change.size(); ++b) {
+      for (const CompensatedSum* sum : {&progress.change[b], &progress.source[b]}) {
+        numbers.push_back(sum->total());
+        numbers.push_back(sum->correction());
+      }
+    }
+  }
+  return numbers;
+}
+
+void OperatorSequence::restore_books(const std::vector<double>& books) {
+  std::size_t at = 0;
+  for (OperatorProgress& progress : progress_) {
+    for (std::size_t b = 0; b < progress.change.size(); ++b) {
+      for (CompensatedSum* sum : {&progress.change[b], &progress.source[b]}) {
+        if (at + 2 > books.size()) return;
+        *sum = CompensatedSum(books[at], books[at + 1]);
+        at += 2;
+      }
+    }
+  }
+}
+
+}  // namespace pileus::coupling

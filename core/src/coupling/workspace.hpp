@@ -1,0 +1,60 @@
+// What one thread needs to run operators on blocks: allocated once, used in every step.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/aligned_array.hpp"
+#include "coupling/bound_operator.hpp"
+
+namespace pileus::coupling {
+
+/// Parcels per block: block boundaries depend on nothing but the number of parcels. Long enough to
+/// hide a call (about 50 ns), short enough for the block's columns to stay in the second-level
+/// cache from one operator to the next.
+inline constexpr std::size_t block_parcels = 1024;
+
+/// Why a block could not be completed.
+struct BlockFailure {
+  std::int64_t block = std::numeric_limits<std::int64_t>::max();
+  std::size_t which = 0;  // operator
+  bool in_diagnose = false;
+  int attempts = 0;
+  pileus_step step{};
+  host::CallResult result;
+  std::vector<std::uint32_t> active;  // given; empty: all
+
+  bool happened() const { return block != std::numeric_limits<std::int64_t>::max(); }
+};
+
+/// Counts of one operator, summed over threads in the ledger.
+struct OperatorCounts {
+  std::uint64_t calls = 0, parcels = 0, skipped = 0, retries = 0;
+  double seconds = 0;  // of one core
+
+  void add(const OperatorCounts& other) {
+    calls += other.calls;
+    parcels += other.parcels;
+    skipped += other.skipped;
+    retries += other.retries;
+    seconds += other.seconds;
+  }
+};
+
+/// Of one thread; not shared.
+struct alignas(cache_line_bytes) Workspace {
+  std::vector<std::vector<pileus_view>> views;  // per operator, static members filled in
+  AlignedArray<double> snapshot;                // of the written columns, one after another
+  std::size_t snapshot_stride = 0;              // parcels per column in it
+  std::vector<std::uint32_t> active, everyone;  // index lists of up to a block
+  std::vector<std::uint8_t> mask, clause_mask;
+  std::vector<double> ledger, attempt;             // sources: of the block, of the present attempt
+  std::vector<OperatorCounts> diagnosed, applied;  // per operator
+  BlockFailure failure;
+
+  /// Makes room for blocks of `parcels`; allocates only when that grows.
+  void reserve(const std::vector<BoundOperator>& operators, std::size_t parcels);
+};
+
+}  // namespace pileus::coupling

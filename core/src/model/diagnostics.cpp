@@ -1,0 +1,284 @@
+#include "model/diagnostics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.hpp"
+
+namespace pileus::model {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr const char* liquid_name = "mass_fraction_of_cloud_liquid_water_in_air";
+constexpr const char* water_name = "mass_fraction_of_total_water_in_air";
+
+struct StateSums {
+  double volume = 0, buoyancy = 0, potential = 0, enstrophy = 0;
+  std::array<double, 3> vorticity{};
+  double low = infinity, high = -infinity, largest_vorticity2 = 0;
+  StateSums& operator+=(const StateSums& o) {
+    volume += o.volume;
+    buoyancy += o.buoyancy;
+    potential += o.potential;
+    enstrophy += o.enstrophy;
+    for (std::size_t c = 0; c < 3; ++c) vorticity[c] += o.vorticity[c];
+    low = std::min(low, o.low);
+    high = std::max(high, o.high);
+    largest_vorticity2 = std::max(largest_vorticity2, o.largest_vorticity2);
+    return *this;
+  }
+};
+
+struct ScalarSums {
+  double sum = 0, low = infinity, high = -infinity;
+};
+
+struct VelocitySums {
+  double energy = 0, speed2 = 0, up = -infinity, down = infinity;
+};
+
+struct CloudSums {
+  double liquid = 0, cloudy = 0, cloudy_liquid = 0, high = 0;
+};
+
+}  // namespace
+
+int Diagnostics::add(std::string name, std::string units, std::string long_name, bool conserved) {
+  list_.push_back({std::move(name), std::move(units), std::move(long_name), conserved});
+  return static_cast<int>(list_.size()) - 1;
+}
+
+int Diagnostics::index(const std::string& name) const {
+  for (std::size_t i = 0; i < list_.size(); ++i)
+    if (list_[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation)
+    : cloud_threshold_(scene.diagnostics.cloud_threshold) {
+  const parcels::Store& store = simulation.store();
+  const bool three = simulation.dimension() == 3;
+  kinetic_ = add("kinetic_energy", "m2 s-2", "mean kinetic energy per mass, of the parcels");
+  grid_kinetic_ = add("grid_kinetic_energy", "m2 s-2", "mean kinetic energy per mass, of the mesh");
+  potential_ = add("potential_energy", "m2 s-2", "mean of -b (z - z_bottom)");
+  if (scene.energy.form != scene::EnergyControl::Form::none) {
+    potential_energy_ = std::make_unique<PotentialEnergy>(scene);
+    available_ = add("available_potential_energy", "m2 s-2", "mean available potential energy");
+  }
+  total_ = add(
+      "total_energy", "m2 s-2",
+      potential_energy_ ? "kinetic and available potential energy" : "kinetic and potential energy",
+      true);
+  enstrophy_ = add("enstrophy", "s-2", "mean of half the squared vorticity");
+  volume_ = add("volume", three ? "m3" : "m2", "sum of the parcels' volumes", true);
+  mean_buoyancy_ = add("mean_buoyancy", "m s-2", "mean buoyancy", true);
+  min_buoyancy_ = add("min_buoyancy", "m s-2", "smallest buoyancy of a parcel");
+  max_buoyancy_ = add("max_buoyancy", "m s-2", "largest buoyancy of a parcel");
+  max_speed_ = add("max_speed", "m s-1", "largest speed of a parcel");
+  max_vertical_velocity_ = add("max_vertical_velocity", "m s-1", "strongest updraught");
+  min_vertical_velocity_ = add("min_vertical_velocity", "m s-1", "strongest downdraught");
+  max_vorticity_ = add("max_vorticity", "s-1", "largest vorticity magnitude of a parcel");
+  volume_error_rms_ = add("volume_error_rms", "1", "r.m.s. error of the gridded volume fraction");
+  volume_error_max_ = add("volume_error_max", "1", "largest error of the gridded volume fraction");
+  parcels_ = add("parcels", "1", "number of parcels");
+  for (int d = 0; d < simulation.dimension() - 1; ++d)
+    mean_wind_.push_back(add(d == 0 ? "mean_wind_x" : "mean_wind_y", "m s-1", "domain-mean wind"));
+  for (int c = 0; c < store.vorticity_components(); ++c)
+    mean_vorticity_.push_back(
+        add(three ? std::string("mean_") + "xyz"[c] + "_vorticity" : "mean_vorticity", "s-1",
+            "domain-mean vorticity"));
+  for (std::size_t s = 0; s < store.scalars().size(); ++s) {
+    const parcels::Scalar& scalar = store.scalars()[s];
+    if (scalar.name == "buoyancy" || scalar.nature == parcels::Nature::derived) continue;
+    ScalarEntries entries{static_cast<int>(s), 0, 0, 0};
+    const bool conserved = scalar.nature == parcels::Nature::intensive;
+    entries.mean = add("mean_" + scalar.name, scalar.units, "domain mean", conserved);
+    entries.low = add("min_" + scalar.name, scalar.units, "smallest value of a parcel");
+    entries.high = add("max_" + scalar.name, scalar.units, "largest value of a parcel");
+    scalars_.push_back(entries);
+  }
+  liquid_scalar_ = store.find_scalar(liquid_name);
+  water_scalar_ = store.find_scalar(water_name);
+  if (water_scalar_ >= 0) total_water_ = add("total_water", "1", "mean total water", true);
+  if (liquid_scalar_ >= 0) {
+    mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
+    max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");
+    cloud_fraction_ = add("cloud_fraction", "1", "volume fraction of cloudy air");
+    cloud_mean_liquid_ = add("cloud_mean_liquid_water", "1", "mean liquid water of cloudy air");
+  }
+  for (const scene::ExactSolution& exact : scene.diagnostics.exact) {
+    exact_.emplace_back(exact, scene, simulation);
+    auto& entries = exact_entries_.emplace_back();
+    for (const auto& [name, units, text] : exact_.back().outputs())
+      entries.push_back(add(name, units, text));
+  }
+  for (const scene::HistogramControl& control : scene.diagnostics.histograms) {
+    histograms_.emplace_back(control, simulation);
+    auto& entries = histogram_entries_.emplace_back();
+    for (const auto& [name, units, text] : histograms_.back().outputs())
+      entries.push_back(add(name, units, text));
+  }
+  values_.assign(list_.size(), 0.0);
+}
+
+void Diagnostics::observe_state(Simulation& simulation) {
+  observe_parcels(simulation);
+  observe_scalars(simulation);
+  observe_cloud(simulation);
+  set(grid_kinetic_, simulation.grid_kinetic_energy());
+  const parcels::VolumeError error = simulation.volume_error();
+  set(volume_error_rms_, error.rms);
+  set(volume_error_max_, error.largest);
+  set(parcels_, static_cast<double>(simulation.store().size()));
+  for (std::size_t d = 0; d < mean_wind_.size(); ++d)
+    set(mean_wind_[d], simulation.mean_wind().velocity[d]);
+  if (potential_energy_) set(available_, potential_energy_->available(simulation));
+  for (std::size_t i = 0; i < exact_.size(); ++i) {
+    const std::vector<double> found = exact_[i].compare(simulation);
+    for (std::size_t k = 0; k < found.size(); ++k) set(exact_entries_[i][k], found[k]);
+  }
+  for (std::size_t i = 0; i < histograms_.size(); ++i) {
+    const std::vector<double> found = histograms_[i].measure(simulation);
+    for (std::size_t k = 0; k < found.size(); ++k) set(histogram_entries_[i][k], found[k]);
+  }
+}
+
+void Diagnostics::observe_parcels(Simulation& simulation) {
+  const parcels::Store& store = simulation.store();
+  const double* volume = store.volume();
+  const double* b = simulation.buoyancy();
+  const double* z = store.position(simulation.dimension() - 1);
+  const double bottom = simulation.bottom();
+  const int components = store.vorticity_components();
+  const StateSums sums = ordered_reduce(
+      store.size(), StateSums{},
+      [&](std::size_t begin, std::size_t end) {
+        StateSums s;
+        for (std::size_t p = begin; p < end; ++p) {
+          const double v = volume[p];
+          s.volume += v;
+          s.buoyancy += v * b[p];
+          s.potential -= v * b[p] * (z[p] - bottom);
+          s.low = std::min(s.low, b[p]);
+          s.high = std::max(s.high, b[p]);
+          double square = 0;
+          for (int c = 0; c < components; ++c) {
+            const double omega = store.vorticity(c)[p];
+            s.vorticity[static_cast<std::size_t>(c)] += v * omega;
+            square += omega * omega;
+          }
+          s.enstrophy += 0.5 * v * square;
+          s.largest_vorticity2 = std::max(s.largest_vorticity2, square);
+        }
+        return s;
+      },
+      [](StateSums a, const StateSums& o) { return a += o; });
+  const double inverse = 1.0 / simulation.domain_volume();
+  set(volume_, sums.volume);
+  set(mean_buoyancy_, sums.buoyancy * inverse);
+  set(potential_, sums.potential * inverse);
+  set(enstrophy_, sums.enstrophy * inverse);
+  set(min_buoyancy_, sums.low);
+  set(max_buoyancy_, sums.high);
+  set(max_vorticity_, std::sqrt(sums.largest_vorticity2));
+  for (std::size_t c = 0; c < mean_vorticity_.size(); ++c)
+    set(mean_vorticity_[c], sums.vorticity[c] * inverse);
+}
+
+void Diagnostics::observe_scalars(const Simulation& simulation) {
+  const parcels::Store& store = simulation.store();
+  const double* volume = store.volume();
+  for (const ScalarEntries& entry : scalars_) {
+    const double* value = store.scalar(entry.scalar);
+    const bool per_volume = store.scalars()[static_cast<std::size_t>(entry.scalar)].nature ==
+                            parcels::Nature::intensive;
+    const ScalarSums sums = ordered_reduce(
+        store.size(), ScalarSums{},
+        [&](std::size_t begin, std::size_t end) {
+          ScalarSums s;
+          for (std::size_t p = begin; p < end; ++p) {
+            s.sum += (per_volume ? volume[p] : 1.0) * value[p];
+            s.low = std::min(s.low, value[p]);
+            s.high = std::max(s.high, value[p]);
+          }
+          return s;
+        },
+        [](ScalarSums a, const ScalarSums& o) {
+          return ScalarSums{a.sum + o.sum, std::min(a.low, o.low), std::max(a.high, o.high)};
+        });
+    const double mean = sums.sum / simulation.domain_volume();
+    set(entry.mean, mean);
+    set(entry.low, sums.low);
+    set(entry.high, sums.high);
+    if (entry.scalar == water_scalar_) set(total_water_, mean);
+  }
+}
+
+void Diagnostics::observe_cloud(const Simulation& simulation) {
+  if (liquid_scalar_ < 0) return;
+  const parcels::Store& store = simulation.store();
+  const double* volume = store.volume();
+  const double* liquid = store.scalar(liquid_scalar_);
+  const CloudSums sums = ordered_reduce(
+      store.size(), CloudSums{},
+      [&](std::size_t begin, std::size_t end) {
+        CloudSums s;
+        for (std::size_t p = begin; p < end; ++p) {
+          s.liquid += volume[p] * liquid[p];
+          s.high = std::max(s.high, liquid[p]);
+          if (liquid[p] > cloud_threshold_) {
+            s.cloudy += volume[p];
+            s.cloudy_liquid += volume[p] * liquid[p];
+          }
+        }
+        return s;
+      },
+      [](CloudSums a, const CloudSums& o) {
+        return CloudSums{a.liquid + o.liquid, a.cloudy + o.cloudy,
+                         a.cloudy_liquid + o.cloudy_liquid, std::max(a.high, o.high)};
+      });
+  const double inverse = 1.0 / simulation.domain_volume();
+  set(mean_liquid_, sums.liquid * inverse);
+  set(max_liquid_, sums.high);
+  set(cloud_fraction_, sums.cloudy * inverse);
+  set(cloud_mean_liquid_, sums.cloudy > 0 ? sums.cloudy_liquid / sums.cloudy : 0.0);
+}
+
+void Diagnostics::observe_velocity(Simulation& simulation) {
+  const parcels::Store& store = simulation.store();
+  const double* volume = store.volume();
+  const int dimension = simulation.dimension();
+  const double* w = simulation.velocity(dimension - 1);
+  const VelocitySums sums = ordered_reduce(
+      store.size(), VelocitySums{},
+      [&](std::size_t begin, std::size_t end) {
+        VelocitySums s;
+        for (std::size_t p = begin; p < end; ++p) {
+          double square = 0;
+          for (int d = 0; d < dimension; ++d) {
+            const double u = simulation.velocity(d)[p];
+            square += u * u;
+          }
+          s.energy += 0.5 * volume[p] * square;
+          s.speed2 = std::max(s.speed2, square);
+          s.up = std::max(s.up, w[p]);
+          s.down = std::min(s.down, w[p]);
+        }
+        return s;
+      },
+      [](VelocitySums a, const VelocitySums& o) {
+        return VelocitySums{a.energy + o.energy, std::max(a.speed2, o.speed2), std::max(a.up, o.up),
+                            std::min(a.down, o.down)};
+      });
+  set(kinetic_, sums.energy / simulation.domain_volume());
+  set(max_speed_, std::sqrt(sums.speed2));
+  set(max_vertical_velocity_, sums.up);
+  set(min_vertical_velocity_, sums.down);
+  const double potential =
+      values_[static_cast<std::size_t>(available_ >= 0 ? available_ : potential_)];
+  set(total_, values_[static_cast<std::size_t>(kinetic_)] + potential);
+}
+
+}  // namespace pileus::model

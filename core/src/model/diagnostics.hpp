@@ -1,0 +1,69 @@
+// Numbers that describe a state: energies, extrema, budgets, clouds.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/exact_comparison.hpp"
+#include "model/histogram.hpp"
+#include "model/potential_energy.hpp"
+#include "model/simulation.hpp"
+#include "scene/scene.hpp"
+
+namespace pileus::model {
+
+struct DiagnosticInfo {
+  std::string name, units, long_name;
+  /// An inviscid, adiabatic run conserves it: its relative change is an error measure.
+  bool conserved = false;
+};
+
+/// Computes all diagnostics of a scene for one evaluated state. All means are over the domain's
+/// volume; sums run in an order independent of the number of threads.
+class Diagnostics {
+ public:
+  Diagnostics(const scene::Scene& scene, const Simulation& simulation);
+
+  const std::vector<DiagnosticInfo>& list() const { return list_; }
+  int index(const std::string& name) const;  // −1: there is none of that name
+
+  /// Part that depends on the evaluated state; call before begin_step().
+  void observe_state(Simulation& simulation);
+  /// Part that needs the parcels' velocity; call after begin_step() or probe().
+  void observe_velocity(Simulation& simulation);
+  /// One value per entry of list(), of the state last observed.
+  const std::vector<double>& values() const { return values_; }
+
+ private:
+  int add(std::string name, std::string units, std::string long_name, bool conserved = false);
+  void set(int index, double value) {
+    if (index >= 0) values_[static_cast<std::size_t>(index)] = value;
+  }
+  void observe_parcels(Simulation& simulation);
+  void observe_scalars(const Simulation& simulation);
+  void observe_cloud(const Simulation& simulation);
+
+  struct ScalarEntries {
+    int scalar, mean, low, high;
+  };
+
+  std::vector<DiagnosticInfo> list_;
+  std::vector<double> values_;
+  std::unique_ptr<PotentialEnergy> potential_energy_;
+  std::vector<ExactComparison> exact_;
+  std::vector<std::vector<int>> exact_entries_;
+  std::vector<Histogram> histograms_;
+  std::vector<std::vector<int>> histogram_entries_;
+  std::vector<ScalarEntries> scalars_;
+  double cloud_threshold_;
+  int liquid_scalar_ = -1, water_scalar_ = -1;
+  int kinetic_, grid_kinetic_, potential_,
+      available_ = -1, total_, enstrophy_, volume_, mean_buoyancy_, min_buoyancy_, max_buoyancy_,
+      max_speed_, max_vertical_velocity_, min_vertical_velocity_, max_vorticity_, volume_error_rms_,
+      volume_error_max_, parcels_;
+  std::vector<int> mean_wind_, mean_vorticity_;
+  int total_water_ = -1, mean_liquid_ = -1, max_liquid_ = -1, cloud_fraction_ = -1,
+      cloud_mean_liquid_ = -1;
+};
+
+}  // namespace pileus::model

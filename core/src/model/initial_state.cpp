@@ -1,0 +1,142 @@
+#include "model/initial_state.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "base/aligned_array.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "parcels/lattice.hpp"
+#include "scene/field_sampler.hpp"
+
+namespace pileus::model {
+namespace {
+
+/// Positions of the parcels as the samplers want them.
+template <int D>
+struct Positions {
+  std::array<const double*, D> axis;
+  const double* x() const { return axis[0]; }
+  const double* y() const { return D == 3 ? axis[1] : nullptr; }
+  const double* z() const { return axis[D - 1]; }
+};
+
+template <int D>
+Positions<D> positions_of(const parcels::Store& store) {
+  Positions<D> p;
+  for (int d = 0; d < D; ++d) p.axis[static_cast<std::size_t>(d)] = store.position(d);
+  return p;
+}
+
+/// Central difference of the sixth order of one field along one axis at every parcel.
+template <int D>
+class Differentiator {
+ public:
+  Differentiator(const mesh::Grid<D>& grid, const parcels::Store& store)
+      : grid_(grid), store_(store), shifted_(store.size()), value_(store.size()) {}
+
+  void add(const scene::FieldSampler& field, int axis, double factor, double* sum) {
+    constexpr std::array<double, 3> weight = {3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0};
+    const double h = grid_.spacing[static_cast<std::size_t>(axis)] / 64.0;
+    for (int offset = 1; offset <= 3; ++offset)
+      for (int side = -1; side <= 1; side += 2) {
+        Positions<D> at = positions_of<D>(store_);
+        const double* centre = at.axis[static_cast<std::size_t>(axis)];
+        for (std::size_t p = 0; p < store_.size(); ++p) shifted_[p] = centre[p] + side * offset * h;
+        at.axis[static_cast<std::size_t>(axis)] = shifted_.data();
+        field.sample(store_.size(), at.x(), at.y(), at.z(), value_.data());
+        const double w = factor * side * weight[static_cast<std::size_t>(offset - 1)] / h;
+        for (std::size_t p = 0; p < store_.size(); ++p) sum[p] += w * value_[p];
+      }
+  }
+
+ private:
+  const mesh::Grid<D>& grid_;
+  const parcels::Store& store_;
+  AlignedArray<double> shifted_, value_;
+};
+
+template <int D>
+void set_vorticity_from_velocity(const scene::Scene& scene, const mesh::Grid<D>& grid,
+                                 parcels::Store& store, dynamics::MeanWind& wind) {
+  std::vector<scene::FieldSampler> velocity;
+  for (const auto& field : scene.initial.velocity) velocity.emplace_back(field, scene);
+  Differentiator<D> differentiate(grid, store);
+  if constexpr (D == 3) {
+    // ω = ∇ × u: component c takes ∂_a u_b − ∂_b u_a with (a, b, c) cyclic.
+    for (int c = 0; c < 3; ++c) {
+      const int a = (c + 1) % 3, b = (c + 2) % 3;
+      differentiate.add(velocity[static_cast<std::size_t>(b)], a, 1.0, store.vorticity(c));
+      differentiate.add(velocity[static_cast<std::size_t>(a)], b, -1.0, store.vorticity(c));
+    }
+  } else {
+    // ζ = ∂w/∂x − ∂u/∂z
+    differentiate.add(velocity[1], 0, 1.0, store.vorticity(0));
+    differentiate.add(velocity[0], 1, -1.0, store.vorticity(0));
+  }
+  AlignedArray<double> u(store.size());
+  const Positions<D> at = positions_of<D>(store);
+  for (int d = 0; d < D - 1; ++d) {
+    velocity[static_cast<std::size_t>(d)].sample(store.size(), at.x(), at.y(), at.z(), u.data());
+    double sum = 0;
+    for (std::size_t p = 0; p < store.size(); ++p) sum += store.volume()[p] * u[p];
+    wind.velocity[static_cast<std::size_t>(d)] += sum / grid.domain_volume();
+  }
+}
+
+}  // namespace
+
+template <int D>
+void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, parcels::Store& store,
+                        dynamics::MeanWind& wind) {
+  parcels::fill_lattice<D>(store, grid, scene.parcels.per_cell, scene.parcels.jitter,
+                           scene.parcels.seed);
+  const Positions<D> at = positions_of<D>(store);
+  const auto sample = [&](const scene::FieldDescription& field, double* out) {
+    scene::FieldSampler(field, scene).sample(store.size(), at.x(), at.y(), at.z(), out);
+  };
+  for (std::size_t d = 0; d < scene.initial.mean_wind.size() && d < 2; ++d)
+    wind.velocity[d] = scene.initial.mean_wind[d];
+  if (scene.initial.velocity_given)
+    set_vorticity_from_velocity<D>(scene, grid, store, wind);
+  else
+    for (std::size_t c = 0; c < scene.initial.vorticity.size(); ++c)
+      sample(scene.initial.vorticity[c], store.vorticity(static_cast<int>(c)));
+  for (std::size_t s = 0; s < store.scalars().size(); ++s) {
+    const parcels::Scalar& scalar = store.scalars()[s];
+    if (scalar.nature == parcels::Nature::derived) continue;
+    double* value = store.scalar(static_cast<int>(s));
+    const auto given = scene.initial.scalars.find(scalar.name);
+    if (given != scene.initial.scalars.end())
+      sample(given->second, value);
+    else
+      for (std::size_t p = 0; p < store.size(); ++p) value[p] = scalar.initial;
+  }
+}
+
+std::function<double(double)> reference_function(const scene::Scene& scene) {
+  auto sampler = std::make_shared<scene::FieldSampler>(scene.background.reference_buoyancy, scene);
+  if (!sampler->height_alone())
+    throw Error(
+        ExitCode::usage,
+        fmt::format("{}:{}:{}: error: the reference buoyancy must be a function of z alone.",
+                    scene.background.reference_buoyancy.where.file,
+                    scene.background.reference_buoyancy.where.line,
+                    scene.background.reference_buoyancy.where.column));
+  return [sampler, x = scene.domain.lower.at(0),
+          y = scene.domain.dimension == 3 ? scene.domain.lower.at(1) : 0.0](double z) {
+    double value = 0;
+    sampler->sample(1, &x, &y, &z, &value);
+    return value;
+  };
+}
+
+template void fill_initial_state<2>(const scene::Scene&, const mesh::Grid<2>&, parcels::Store&,
+                                    dynamics::MeanWind&);
+template void fill_initial_state<3>(const scene::Scene&, const mesh::Grid<3>&, parcels::Store&,
+                                    dynamics::MeanWind&);
+
+}  // namespace pileus::model

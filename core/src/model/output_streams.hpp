@@ -1,0 +1,72 @@
+// What a run writes while it goes on: fields, parcels, profiles, the series of diagnostics.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/record.hpp"
+#include "model/simulation.hpp"
+#include "output/field_file.hpp"
+#include "output/parcel_file.hpp"
+#include "output/run_directory.hpp"
+#include "scene/scene.hpp"
+
+namespace pileus::model {
+
+/// Multiples of an interval, without drift.
+class Schedule {
+ public:
+  /// `every` ≤ 0: never.
+  explicit Schedule(double every) : every_(every) {}
+  /// Next multiple that is not done (s), infinity when never.
+  double next() const;
+  /// First multiple after `time` (s), infinity when never.
+  double next_after(double time) const;
+  bool due(double time) const { return time >= next() - 1e-9 * every_; }
+  /// The record of `time` is written: the next one is the first multiple after it.
+  void done(double time);
+  /// Everything before `time` is written, what is due at `time` is not.
+  void resume_at(double time);
+
+ private:
+  double every_;
+  double count_ = 0;
+};
+
+class OutputStreams {
+ public:
+  /// Creates the writers of the streams the scene switches on. Throws Error (usage) for variables
+  /// that do not exist, with the nearest that do.
+  OutputStreams(const scene::Scene& scene, const Simulation& simulation, const Record& record,
+                const output::RunDirectory& directory, const output::Provenance& provenance,
+                output::Start start);
+
+  /// First time after `time` at which a stream wants the state, for the steps to land on (s).
+  double next_landing_after(double time) const;
+  bool series_due(double time) const { return series_schedule_.due(time); }
+  void series_done(double time) { series_schedule_.done(time); }
+
+  /// Writes whatever is due at the evaluated state; `last` writes a record of every stream.
+  void write_due(Simulation& simulation, bool last);
+  /// Brings the file of the series up to date with the record.
+  void flush_series(const Record& record);
+  /// Treats everything before `time` as written (a resumed run).
+  void resume_at(double time);
+
+  std::vector<output::OutputSummary> summarise() const;
+
+ private:
+  void write_fields(Simulation& simulation);
+  void write_profiles(Simulation& simulation);
+
+  Schedule fields_schedule_, parcels_schedule_, profiles_schedule_, series_schedule_;
+  std::vector<output::Variable> field_variables_, profile_variables_;
+  std::unique_ptr<output::FieldFile> fields_;
+  std::unique_ptr<output::ParcelFile> parcels_;
+  std::unique_ptr<output::ProfileFile> profiles_;
+  std::unique_ptr<output::SeriesFile> series_;
+  std::vector<std::vector<double>> values_;
+  double field_time_ = -1, parcel_time_ = -1, profile_time_ = -1;
+};
+
+}  // namespace pileus::model

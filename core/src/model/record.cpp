@@ -1,0 +1,148 @@
+#include "model/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/nearest_word.hpp"
+
+namespace pileus::model {
+
+void Record::append(double time, const std::vector<double>& values) {
+  times_.push_back(time);
+  for (std::size_t i = 0; i < series_.size(); ++i) series_[i].push_back(values[i]);
+}
+
+double Record::at(std::size_t diagnostic, double time) const {
+  const std::vector<double>& values = series_[diagnostic];
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+  if (after == times_.begin()) return values.front();
+  if (after == times_.end()) return values.back();
+  const auto i = static_cast<std::size_t>(after - times_.begin());
+  const double fraction = (time - times_[i - 1]) / (times_[i] - times_[i - 1]);
+  return values[i - 1] + fraction * (values[i] - values[i - 1]);
+}
+
+const std::vector<std::string>& known_statistics() {
+  static const std::vector<std::string> words = {
+      "initial", "final", "min", "max", "mean", "relative_change", "first_time_above"};
+  return words;
+}
+
+std::optional<double> Record::statistic(std::size_t diagnostic, const std::string& name,
+                                        std::optional<double> time) const {
+  if (times_.empty()) return std::nullopt;
+  const std::vector<double>& values = series_[diagnostic];
+  const double end = time ? at(diagnostic, *time) : values.back();
+  const auto last = time ? std::upper_bound(times_.begin(), times_.end(), *time) : times_.end();
+  const auto count = std::max<std::ptrdiff_t>(1, last - times_.begin());
+  const auto begin = values.begin(), stop = values.begin() + count;
+  if (name == "initial") return values.front();
+  if (name == "final") return end;
+  if (name == "min") return *std::min_element(begin, stop);
+  if (name == "max") return *std::max_element(begin, stop);
+  if (name == "mean") {
+    double sum = 0;
+    for (auto v = begin; v != stop; ++v) sum += *v;
+    return sum / static_cast<double>(count);
+  }
+  if (name == "relative_change") return (end - values.front()) / std::abs(values.front());
+  if (name == "first_time_above") {
+    // Time at which the series first exceeds zero: when a first cloud appears.
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      if (values[static_cast<std::size_t>(i)] > 0) return times_[static_cast<std::size_t>(i)];
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::vector<output::DiagnosticSummary> Record::summarise() const {
+  std::vector<output::DiagnosticSummary> result;
+  for (std::size_t i = 0; i < list_.size(); ++i) {
+    output::DiagnosticSummary d;
+    d.name = list_[i].name;
+    d.units = list_[i].units;
+    if (!times_.empty()) {
+      d.initial = *statistic(i, "initial", {});
+      d.final = *statistic(i, "final", {});
+      d.min = *statistic(i, "min", {});
+      d.max = *statistic(i, "max", {});
+      d.mean = *statistic(i, "mean", {});
+      if (list_[i].conserved) d.relative_change = statistic(i, "relative_change", {});
+    }
+    result.push_back(std::move(d));
+  }
+  return result;
+}
+
+void Record::save(output::NamedData& data) const {
+  data.arrays["record/times"] = times_;
+  for (std::size_t i = 0; i < list_.size(); ++i)
+    data.arrays["record/" + list_[i].name] = series_[i];
+}
+
+void Record::restore(const output::NamedData& data) {
+  times_ = data.arrays.at("record/times");
+  for (std::size_t i = 0; i < list_.size(); ++i) {
+    const auto stored = data.arrays.find("record/" + list_[i].name);
+    // A diagnostic that is new since the checkpoint has no past.
+    series_[i] = stored != data.arrays.end() ? stored->second
+                                             : std::vector<double>(times_.size(), std::nan(""));
+  }
+}
+
+std::vector<output::ExpectSummary> judge(const std::vector<scene::Expectation>& expect,
+                                         const Record& record) {
+  std::vector<output::ExpectSummary> results;
+  for (const scene::Expectation& e : expect) {
+    output::ExpectSummary r;
+    r.diagnostic = e.diagnostic;
+    r.statistic = e.statistic;
+    r.at = e.at;
+    r.low = e.low;
+    r.high = e.high;
+    r.source = e.source;
+    const auto& list = record.list();
+    const auto found = std::find_if(
+        list.begin(), list.end(), [&](const DiagnosticInfo& d) { return d.name == e.diagnostic; });
+    if (found != list.end()) {
+      const auto value =
+          record.statistic(static_cast<std::size_t>(found - list.begin()), e.statistic, e.at);
+      if (value) r.value = *value;
+    }
+    // Comparisons with a value that is not available are false: nothing unmeasured passes.
+    r.passed = !std::isnan(r.value) && !(e.low && !(r.value >= *e.low)) &&
+               !(e.high && !(r.value <= *e.high));
+    results.push_back(std::move(r));
+  }
+  return results;
+}
+
+void check_expectations(const std::vector<scene::Expectation>& expect,
+                        const std::vector<DiagnosticInfo>& list) {
+  std::vector<std::string> names;
+  for (const DiagnosticInfo& d : list) names.push_back(d.name);
+  std::string errors;
+  const auto complain = [&](const scene::Expectation& e, const std::string& what,
+                            const std::string& word, const std::vector<std::string>& valid) {
+    const std::string nearest = nearest_word(word, valid);
+    errors += fmt::format("{}:{}:{}: error: this run has no {} '{}'; {}.\n", e.where.file,
+                          e.where.line, e.where.column, what, word,
+                          nearest.empty() ? fmt::format("it has {}", fmt::join(valid, ", "))
+                                          : fmt::format("did you mean '{}'?", nearest));
+  };
+  for (const scene::Expectation& e : expect) {
+    if (std::find(names.begin(), names.end(), e.diagnostic) == names.end())
+      complain(e, "diagnostic", e.diagnostic, names);
+    const auto& statistics = known_statistics();
+    if (std::find(statistics.begin(), statistics.end(), e.statistic) == statistics.end())
+      complain(e, "statistic", e.statistic, statistics);
+  }
+  if (errors.empty()) return;
+  errors.pop_back();
+  throw Error(ExitCode::usage, errors);
+}
+
+}  // namespace pileus::model
