@@ -17,7 +17,7 @@ class Relaxation : public pileus::Operator<Relaxation> {
     d.op.licence = "Apache-2.0";
     d.op.form = PILEUS_FLOW;
     d.provides("tracer_relaxation");
-    tracer = d.owns("tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
+    tracer = d.owns("passive_tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
     time_scale = d.number("time_scale", "s", 3600).range(1e-3, 1e9).doc("e-folding time");
     target = d.number("target", "1", 0).range(-1e6, 1e6).doc("value relaxed to");
   }

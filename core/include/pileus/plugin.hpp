@@ -84,7 +84,7 @@ class Declaration {
     Quantity& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
     /// Conserved per unit volume: volume-weighted mean at a merge, copied at a split.
     Quantity& intensive(const char* budget = nullptr) {
-      row_.nature = PILEUS_INTENSIVE, row_.weight = "volume", row_.budget = budget;
+      row_.nature = PILEUS_INTENSIVE, row_.weight = "parcel_volume", row_.budget = budget;
       return *this;
     }
     /// An amount: summed at a merge, shared by volume at a split.

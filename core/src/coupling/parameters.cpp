@@ -11,12 +11,18 @@ namespace {
 
 scene::ParameterType type_of(std::uint32_t type) {
   switch (type) {
-    case PILEUS_INTEGER: return scene::ParameterType::integer;
-    case PILEUS_SWITCH: return scene::ParameterType::toggle;
-    case PILEUS_CHOICE: return scene::ParameterType::choice;
-    case PILEUS_TEXT: return scene::ParameterType::text;
-    case PILEUS_NUMBERS: return scene::ParameterType::numbers;
-    default: return scene::ParameterType::number;
+    case PILEUS_INTEGER:
+      return scene::ParameterType::integer;
+    case PILEUS_SWITCH:
+      return scene::ParameterType::toggle;
+    case PILEUS_CHOICE:
+      return scene::ParameterType::choice;
+    case PILEUS_TEXT:
+      return scene::ParameterType::text;
+    case PILEUS_NUMBERS:
+      return scene::ParameterType::numbers;
+    default:
+      return scene::ParameterType::number;
   }
 }
 
@@ -59,9 +65,14 @@ host::ParameterValues read_parameters(const scene::OperatorBlock& block,
       case PILEUS_CHOICE:
         values.set_choice(index, static_cast<int>(read.number[i]), read.text[i]);
         break;
-      case PILEUS_TEXT: values.set_text(index, read.text[i]); break;
-      case PILEUS_NUMBERS: values.set_list(index, read.list[i]); break;
-      default: values.set_number(index, read.number[i]);
+      case PILEUS_TEXT:
+        values.set_text(index, read.text[i]);
+        break;
+      case PILEUS_NUMBERS:
+        values.set_list(index, read.list[i]);
+        break;
+      default:
+        values.set_number(index, read.number[i]);
     }
   }
   return values;
