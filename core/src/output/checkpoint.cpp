@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <set>
-#include <stdexcept>
 #include <string_view>
 
 #include "base/log.hpp"
+#include "output/seal.hpp"
 
 namespace pileus::output {
 
@@ -37,13 +36,6 @@ std::optional<std::uint64_t> step_of(const std::filesystem::path& path) {
 struct Header {
   double time = 0, dt = 0;
   std::uint64_t step = 0, parcels = 0, dimension = 0;
-
-  void add_to(PayloadDigest& digest) const {
-    digest.add("header/time", &time, sizeof time);
-    digest.add("header/dt", &dt, sizeof dt);
-    const std::array<std::uint64_t, 3> numbers = {step, parcels, dimension};
-    digest.add("header/numbers", numbers.data(), sizeof numbers);
-  }
 };
 
 void write_header(const Session& session, const Header& header) {
@@ -69,14 +61,6 @@ Header read_header(const Session& session) {
   hdf5::read_attribute(session, file, "parcels", H5T_NATIVE_UINT64, &header.parcels);
   hdf5::read_attribute(session, file, "dimension", H5T_NATIVE_UINT64, &header.dimension);
   return header;
-}
-
-void require_digest(const Session& session, const PayloadDigest& digest) {
-  if (hdf5::read_text_attribute(session, session.file(), "payload_sha256") != digest.finish_hex())
-    throw Error(ExitCode::file,
-                fmt::format("{}: the checkpoint is damaged: its content does not have the "
-                            "checksum it was written with.",
-                            session.path().string()));
 }
 
 Id open_state(const Session& session) {
@@ -129,70 +113,42 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
   const Header header{checkpoint.time, checkpoint.dt, checkpoint.step, store.size(),
                       static_cast<std::uint64_t>(store.dimension())};
   Session session = Session::create(path);
-  PayloadDigest digest;
   write_header(session, header);
-  header.add_to(digest);
   {
     const Id state = hdf5::create_group(session, session.file(), "state");
     hdf5::write_array(session, state, "uid", H5T_STD_U64LE, H5T_NATIVE_UINT64, store.uid(),
                       store.size());
-    digest.add("state/uid", store.uid(), store.size() * sizeof(std::uint64_t));
     for (int column = 0; column < store.state_columns(); ++column) {
       const std::string name = store.column_name(column);
       hdf5::write_array(session, state, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
                         store.column(column), store.size());
-      digest.add("state/" + name, store.column(column), store.size() * sizeof(double));
     }
   }
-  write_named_data(session, checkpoint.data, digest);
-  hdf5::write_attribute(session, session.file(), "payload_sha256", digest.finish_hex());
-  session.commit(true);
+  write_named_data(session, checkpoint.data);
+  session.commit_sealed();
   remove_older(folder, path, std::max(keep, 1));
   return path;
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, parcels::Store& store) {
+  require_seal(path);
   const Session session = Session::read(path);
   const Header header = read_header(session);
   const Id state = open_state(session);
   require_same_columns(session, header, state, store);
-  PayloadDigest digest;
-  header.add_to(digest);
-  if (header.parcels > std::filesystem::file_size(path) / sizeof(double))
-    throw Error(ExitCode::file, fmt::format("{}: the checkpoint is damaged: it claims {} parcels, "
-                                            "more than the file can hold.",
-                                            path.string(), header.parcels));
   store.resize(header.parcels);
   hdf5::read_array_into(session, state, "uid", H5T_NATIVE_UINT64, store.uid(), store.size());
-  digest.add("state/uid", store.uid(), store.size() * sizeof(std::uint64_t));
   for (int column = 0; column < store.state_columns(); ++column) {
     const std::string name = store.column_name(column);
     hdf5::read_array_into(session, state, name, H5T_NATIVE_DOUBLE, store.column(column),
                           store.size());
-    digest.add("state/" + name, store.column(column), store.size() * sizeof(double));
   }
-  Checkpoint checkpoint{header.time, header.step, header.dt, read_named_data(session, digest)};
-  require_digest(session, digest);
-  return checkpoint;
+  return {header.time, header.step, header.dt, read_named_data(session)};
 }
 
 void verify_checkpoint(const std::filesystem::path& path) {
-  const Session session = Session::read(path);
-  const Header header = read_header(session);
-  PayloadDigest digest;
-  header.add_to(digest);
-  const Id state = open_state(session);
-  for (const std::string& name : hdf5::object_names(session, state)) {
-    if (name == "uid") {
-      const auto values = hdf5::read_array<std::uint64_t>(session, state, name);
-      digest.add("state/uid", values.data(), values.size() * sizeof(std::uint64_t));
-    } else {
-      const auto values = hdf5::read_array<double>(session, state, name);
-      digest.add("state/" + name, values.data(), values.size() * sizeof(double));
-    }
-  }
-  read_named_data(session, digest);
-  require_digest(session, digest);
+  require_seal(path);
+  read_header(Session::read(path));
 }
 
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& folder) {

@@ -21,8 +21,8 @@ struct Checkpoint {
 
 /// Writes `folder`/checkpoint_<step>.h5: aside, synced, renamed, folder synced; then removes all
 /// but the newest `keep` (≥ 1) checkpoints. State columns and uids are stored exactly, in the order
-/// of memory, with a SHA-256 of the whole content. Throws Error(ExitCode::file); every earlier
-/// checkpoint is then untouched. Returns the path.
+/// of memory, and the file ends with the SHA-256 of all its bytes (seal.hpp). Throws
+/// Error(ExitCode::file); every earlier checkpoint is then untouched. Returns the path.
 std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
                                        const parcels::Store& store, const Checkpoint& checkpoint,
                                        int keep);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "output/hdf5_driver.hpp"
+#include "output/seal.hpp"
 
 namespace pileus::output::hdf5 {
 
@@ -82,10 +83,11 @@ Session::~Session() {
   if (staged_) file_.reset();  // HDF5 flushes into the staged file, which then drops it
 }
 
-void Session::commit(bool durable) {
+void Session::finish(bool durable, bool sealed) {
   const hid_t file = file_;
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), "write");
   file_.reset();
+  if (sealed) add_seal(*staged_);
   staged_->commit(durable);
 }
 

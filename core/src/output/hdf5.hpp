@@ -45,7 +45,9 @@ class Session {
 
   hid_t file() const { return file_; }
   const std::filesystem::path& path() const { return staged_->path(); }
-  void commit(bool durable = false);
+  void commit() { finish(false, false); }
+  /// As `commit`; the file ends with a checksum (seal.hpp) and survives a power cut.
+  void commit_sealed() { finish(true, true); }
 
   /// Passes a result of the C API on; throws when it is negative: "cannot <operation>".
   template <class Result>
@@ -59,6 +61,7 @@ class Session {
 
  private:
   Session(const std::filesystem::path& path, StagedFile::Mode mode);
+  void finish(bool durable, bool sealed);
   std::unique_ptr<StagedFile> staged_;
   Id file_;
 };

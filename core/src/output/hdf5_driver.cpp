@@ -44,8 +44,8 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
 
 herr_t query(const H5FD_t*, unsigned long* flags) {
   if (flags != nullptr)
-    *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
-             H5FD_FEAT_AGGREGATE_SMALLDATA;
+    // No accumulation of metadata: it would hide what kind of object is written.
+    *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_DATA_SIEVE | H5FD_FEAT_AGGREGATE_SMALLDATA;
   return 0;
 }
 
@@ -66,8 +66,16 @@ herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t bytes, void
   return self(file).file->read(address, bytes, buffer) ? 0 : -1;
 }
 
-herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t bytes, const void* buffer) {
-  self(file).file->write(address, bytes, buffer);
+/// Object headers hold the extents, which lead readers to everything else. The superblock, with the
+/// end of the file, has to be new before them.
+StagedFile::Role role_of(H5FD_mem_t type) {
+  if (type == H5FD_MEM_DRAW) return StagedFile::Role::data;
+  return type == H5FD_MEM_OHDR ? StagedFile::Role::header : StagedFile::Role::index;
+}
+
+herr_t write(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t address, size_t bytes,
+             const void* buffer) {
+  self(file).file->write(address, bytes, buffer, role_of(type));
   return 0;
 }
 

@@ -1,27 +1,13 @@
 #include "output/named_data.hpp"
 
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 
 namespace pileus::output {
 
 using hdf5::Id;
 using hdf5::Session;
-
-void PayloadDigest::add(const std::string& name, const void* data, std::size_t bytes) {
-  Sha256 hash;
-  hash.update(&bytes, sizeof bytes).update(data, bytes);
-  items_[name] = hash.finish_hex();
-}
-
-std::string PayloadDigest::finish_hex() const {
-  Sha256 hash;
-  for (const auto& [name, digest] : items_) {
-    const std::size_t length = name.size();
-    hash.update(&length, sizeof length).update(name).update(digest);
-  }
-  return hash.finish_hex();
-}
 
 namespace {
 
@@ -54,53 +40,49 @@ hid_t native_type() {
 
 template <class T>
 void write_section(const Session& session, const std::string& section,
-                   const std::map<std::string, std::vector<T>>& items, PayloadDigest& digest) {
+                   const std::map<std::string, std::vector<T>>& items) {
   const Id group = hdf5::create_group(session, session.file(), section);
   for (const auto& [name, values] : items) {
     hdf5::write_array(session, group, link_name(name), native_type<T>(), native_type<T>(),
                       values.data(), values.size());
-    digest.add(section + "/" + name, values.data(), values.size() * sizeof(T));
   }
 }
 
 template <class T>
 void read_section(const Session& session, const std::string& section,
-                  std::map<std::string, std::vector<T>>& items, PayloadDigest& digest) {
+                  std::map<std::string, std::vector<T>>& items) {
   const Id group(
       session.check(H5Gopen2(session.file(), section.c_str(), H5P_DEFAULT), "open " + section));
   for (const std::string& link : hdf5::object_names(session, group)) {
     const std::string name = name_of_link(link);
     std::vector<T>& values = items[name];
     values = hdf5::read_array<T>(session, group, link);
-    digest.add(section + "/" + name, values.data(), values.size() * sizeof(T));
   }
 }
 
 }  // namespace
 
-void write_named_data(const Session& session, const NamedData& data, PayloadDigest& digest) {
-  write_section(session, "arrays", data.arrays, digest);
-  write_section(session, "counters", data.counters, digest);
-  write_section(session, "bytes", data.bytes, digest);
+void write_named_data(const Session& session, const NamedData& data) {
+  write_section(session, "arrays", data.arrays);
+  write_section(session, "counters", data.counters);
+  write_section(session, "bytes", data.bytes);
   const Id texts = hdf5::create_group(session, session.file(), "texts");
   for (const auto& [name, text] : data.texts) {
     if (text.find('\0') != std::string::npos)
       throw std::invalid_argument("stored text " + name + " holds NUL");
     hdf5::write_text(session, texts, link_name(name), text);
-    digest.add("texts/" + name, text.data(), text.size());
   }
 }
 
-NamedData read_named_data(const Session& session, PayloadDigest& digest) {
+NamedData read_named_data(const Session& session) {
   NamedData data;
-  read_section(session, "arrays", data.arrays, digest);
-  read_section(session, "counters", data.counters, digest);
-  read_section(session, "bytes", data.bytes, digest);
+  read_section(session, "arrays", data.arrays);
+  read_section(session, "counters", data.counters);
+  read_section(session, "bytes", data.bytes);
   const Id texts(session.check(H5Gopen2(session.file(), "texts", H5P_DEFAULT), "open texts"));
   for (const std::string& link : hdf5::object_names(session, texts)) {
     std::string& text = data.texts[name_of_link(link)];
     text = hdf5::read_text(session, texts, link);
-    digest.add("texts/" + name_of_link(link), text.data(), text.size());
   }
   return data;
 }

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -88,30 +87,34 @@ void sync_directory(const std::filesystem::path& directory) {
     throw file_error(name, "sync the folder", errno);
 }
 
-void replace_file(const std::filesystem::path& path, std::string_view text) {
+void replace_file(const std::filesystem::path& path, std::string_view text, bool durable) {
   std::filesystem::path aside = path;
   aside += ".tmp";
   try {
     const Descriptor file(aside, O_WRONLY | O_CREAT | O_TRUNC, "write");
-    if (!write_fully(file.get(), text.data(), text.size(), 0) || ::fsync(file.get()) != 0)
+    if (!write_fully(file.get(), text.data(), text.size(), 0) ||
+        (durable && ::fsync(file.get()) != 0))
       throw file_error(path, "write", errno);
     if (::rename(aside.c_str(), path.c_str()) != 0) throw file_error(path, "replace", errno);
   } catch (...) {
     ::unlink(aside.c_str());
     throw;
   }
-  sync_directory(path.parent_path());
+  if (durable) sync_directory(path.parent_path());
 }
 
 std::string read_text_file(const std::filesystem::path& path) {
   const Descriptor file(path, O_RDONLY, "read");
-  struct stat status {};
-  if (::fstat(file.get(), &status) != 0) throw file_error(path, "read", errno);
-  std::string text(static_cast<std::size_t>(status.st_size), '\0');
-  const std::int64_t count = read_fully(file.get(), text.data(), text.size(), 0);
-  if (count < 0) throw file_error(path, "read", errno);
-  text.resize(static_cast<std::size_t>(count));
-  return text;
+  std::string text;
+  // Until nothing more comes: files of /proc state a size of zero.
+  for (std::size_t piece = 4096;; piece *= 2) {
+    const std::size_t before = text.size();
+    text.resize(before + piece);
+    const std::int64_t count = read_fully(file.get(), text.data() + before, piece, before);
+    if (count < 0) throw file_error(path, "read", errno);
+    text.resize(before + static_cast<std::size_t>(count));
+    if (static_cast<std::size_t>(count) < piece) return text;
+  }
 }
 
 }  // namespace pileus::output

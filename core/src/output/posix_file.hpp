@@ -42,9 +42,10 @@ bool write_fully(int descriptor, const void* buffer, std::size_t bytes, std::uin
 /// directory are tolerated.
 void sync_directory(const std::filesystem::path& directory);
 
-/// Replaces `path` by `text`: written aside, synced, renamed. A reader sees the old or the new
+/// Replaces `path` by `text`: written aside, renamed. A reader sees the old or the new
 /// text, never a part of one; when this throws, the old file is untouched.
-void replace_file(const std::filesystem::path& path, std::string_view text);
+/// `durable` makes the new text survive a power cut.
+void replace_file(const std::filesystem::path& path, std::string_view text, bool durable = true);
 
 /// The whole file; throws `file_error`.
 std::string read_text_file(const std::filesystem::path& path);

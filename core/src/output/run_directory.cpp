@@ -52,17 +52,18 @@ std::string host_name() {
 }
 
 /// Start of a process in clock ticks since boot (field 22 of /proc/<pid>/stat), which tells a
-/// process from a later one of the same number; empty when there is no such process.
+/// process from a later one of the same number; "-" when there is no such process.
 std::string process_start(long pid) {
   try {
     const std::string stat = read_text_file(fmt::format("/proc/{}/stat", pid));
     std::istringstream fields(stat.substr(stat.rfind(')') + 1));
     std::string field;
     for (int number = 3; number <= 22; ++number) fields >> field;
-    return field;
+    if (!field.empty()) return field;
   } catch (const Error&) {
-    return {};
+    // No such process, or a system without /proc.
   }
+  return "-";
 }
 
 struct LockHolder {
@@ -83,7 +84,7 @@ struct LockHolder {
     if (host != host_name() || pid <= 0) return false;
     if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return true;
     const std::string now = process_start(pid);
-    return !now.empty() && now != start;
+    return now != "-" && now != start;
   }
 };
 

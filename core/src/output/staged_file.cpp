@@ -85,21 +85,23 @@ bool StagedFile::read(std::uint64_t offset, std::size_t bytes, void* buffer) con
     const std::uint64_t page_start = page->first * page_bytes;
     const std::uint64_t from = std::max(offset, page_start);
     const std::uint64_t to_end = std::min(end, page_start + page_bytes);
-    std::memcpy(to + (from - offset), page->second.get() + (from - page_start), to_end - from);
+    std::memcpy(to + (from - offset), page->second.content.get() + (from - page_start),
+                to_end - from);
   }
   return true;
 }
 
 StagedFile::Page& StagedFile::held_page(std::uint64_t index) {
   Page& page = held_[index];
-  if (!page) {
-    page = std::make_unique<std::byte[]>(page_bytes);
-    if (read_fully(file_.get(), page.get(), page_bytes, index * page_bytes) < 0) failure_ = errno;
+  if (!page.content) {
+    page.content = std::make_unique<std::byte[]>(page_bytes);
+    if (read_fully(file_.get(), page.content.get(), page_bytes, index * page_bytes) < 0)
+      failure_ = errno;
   }
   return page;
 }
 
-void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buffer) {
+void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buffer, Role role) {
   if (failure_ != 0 || bytes == 0) return;
   if (!file_ || mode_ == Mode::read) {
     failure_ = EBADF;
@@ -111,7 +113,9 @@ void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buff
   while (at < std::min(end, committed_)) {
     const std::uint64_t index = at / page_bytes, page_start = index * page_bytes;
     const std::uint64_t stop = std::min({end, committed_, page_start + page_bytes});
-    std::memcpy(held_page(index).get() + (at - page_start), from + (at - offset), stop - at);
+    Page& page = held_page(index);
+    page.role = std::max(page.role, role);
+    std::memcpy(page.content.get() + (at - page_start), from + (at - offset), stop - at);
     at = stop;
   }
   if (at < end && !write_fully(file_.get(), from + (at - offset), end - at, at)) failure_ = errno;
@@ -153,13 +157,14 @@ std::vector<std::byte> StagedFile::journal() const {
   for (const auto& [index, page] : held_)
     if (index * page_bytes < end) ++header.page_count;
   append_bytes(text, &header, sizeof header);
-  for (const auto& [index, page] : held_) {
-    const std::uint64_t start = index * page_bytes;
-    if (start >= end) continue;
-    const PageHeader page_header{start, std::min(page_bytes, end - start)};
-    append_bytes(text, &page_header, sizeof page_header);
-    append_bytes(text, page.get(), page_header.bytes);
-  }
+  for (const Role role : {Role::data, Role::index, Role::header})
+    for (const auto& [index, page] : held_) {
+      const std::uint64_t start = index * page_bytes;
+      if (page.role != role || start >= end) continue;
+      const PageHeader page_header{start, std::min(page_bytes, end - start)};
+      append_bytes(text, &page_header, sizeof page_header);
+      append_bytes(text, page.content.get(), page_header.bytes);
+    }
   const Sha256::Digest digest = Sha256().update(text.data(), text.size()).finish();
   append_bytes(text, digest.data(), digest.size());
   return text;
@@ -230,7 +235,7 @@ void StagedFile::look_through(const std::vector<std::byte>& journal) {
     PageHeader page_header;
     std::memcpy(&page_header, at, sizeof page_header);
     at += sizeof page_header;
-    std::memcpy(held_page(page_header.offset / page_bytes).get(), at, page_header.bytes);
+    std::memcpy(held_page(page_header.offset / page_bytes).content.get(), at, page_header.bytes);
     at += page_header.bytes;
   }
   committed_ = size_ = header.final_bytes;

@@ -25,6 +25,10 @@ class StagedFile {
     read,    // sees an interrupted commit as finished
   };
 
+  /// The order in which a commit changes existing pages, so that somebody who reads meanwhile meets
+  /// a reference only after what it refers to.
+  enum class Role { data, index, header };
+
   /// Opens; throws Error(ExitCode::file).
   StagedFile(std::filesystem::path path, Mode mode);
   /// Discards what was not committed.
@@ -42,7 +46,7 @@ class StagedFile {
   bool read(std::uint64_t offset, std::size_t bytes, void* buffer) const;
   /// Never fails here: the first failure is kept in `failure()`, makes the commit throw, and turns
   /// later writes into no-ops. HDF5 cannot close a file whose driver fails; it can close this one.
-  void write(std::uint64_t offset, std::size_t bytes, const void* buffer);
+  void write(std::uint64_t offset, std::size_t bytes, const void* buffer, Role role = Role::data);
   /// errno of the first failed write, or 0.
   int failure() const { return failure_; }
 
@@ -54,7 +58,10 @@ class StagedFile {
 
  private:
   static constexpr std::uint64_t page_bytes = 4096;
-  using Page = std::unique_ptr<std::byte[]>;
+  struct Page {
+    std::unique_ptr<std::byte[]> content;
+    Role role = Role::data;  // the last of those written to it
+  };
 
   std::filesystem::path journal_path() const;
   std::filesystem::path aside_path() const;

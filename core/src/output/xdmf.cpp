@@ -102,7 +102,7 @@ void write_field_sidecar(const std::filesystem::path& sidecar, const std::filesy
                                              fmt::format("{}:/{}", file, escaped(variable.name))));
     grids += "</Grid>\n";
   }
-  replace_file(sidecar, document("fields", grids));
+  replace_file(sidecar, document("fields", grids), false);
 }
 
 void write_point_sidecar(const std::filesystem::path& sidecar, const std::filesystem::path& data,
@@ -129,7 +129,7 @@ void write_point_sidecar(const std::filesystem::path& sidecar, const std::filesy
     grids += "</Grid>\n";
     first += record.count;
   }
-  replace_file(sidecar, document("parcels", grids));
+  replace_file(sidecar, document("parcels", grids), false);
 }
 
 }  // namespace pileus::output
