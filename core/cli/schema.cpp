@@ -1,0 +1,48 @@
+// pileus schema: the JSON Schema of scenes, for editors.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "host/search.hpp"
+#include "study/declarations.hpp"
+#include "verb.hpp"
+
+namespace pileus::cli {
+
+namespace {
+
+struct SchemaRequest {
+  bool as_reference = false;
+  std::string path;  // empty: standard output
+};
+
+ExitCode show(const SchemaRequest& request) {
+  std::string text = study::scene_schema(host::default_search_path("."));
+  if (request.as_reference) text = study::key_reference(text);
+  if (request.path.empty()) {
+    std::cout << text;
+    return ExitCode::done;
+  }
+  std::ofstream file(request.path, std::ios::binary);
+  file << text;
+  if (!file.flush()) {
+    throw Error(ExitCode::file, fmt::format("{}: cannot be written", request.path));
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_schema(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "schema", "Print the JSON Schema of scenes, with the plugins found, for editors");
+  auto request = std::make_shared<SchemaRequest>();
+  verb->add_flag("--reference", request->as_reference, "As a page of Markdown for reading");
+  verb->add_option("--write", request->path, "Write to this file instead")->type_name("FILE");
+  verb->callback([&action, request] { action = [request] { return show(*request); }; });
+}
+
+}  // namespace pileus::cli
