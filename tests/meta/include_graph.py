@@ -19,7 +19,7 @@ HOMES = {
     "udunits2.h": {"base"},
     "openssl": {"base"},
     "Random123": {"base"},
-    "omp.h": {"base", "mesh"},
+    "omp.h": {"base", "mesh", "model"},
     "yaml-cpp": {"scene"},
     "muParser.h": {"scene"},
     "fftw3.h": {"mesh"},
