@@ -101,11 +101,14 @@ void Merge<D>::find_links(const Store& store, const CellOrder<D>& order) {
 template <int D>
 std::uint32_t Merge<D>::nearest(const Store& store, const CellOrder<D>& order,
                                 std::uint32_t p) const {
-  const auto node_below = [&](int axis) {
-    return static_cast<int>(
-        std::lround((store.position(axis)[p] - grid_.lower[axis]) * grid_.inverse_spacing[axis]));
-  };
-  const int ci = node_below(0), cj = D == 3 ? node_below(1) : 0, ck = node_below(D - 1);
+  int nearest_node[D];
+  for (int a = 0; a < D; ++a) {
+    const double xi = (store.position(a)[p] - grid_.lower[a]) * grid_.inverse_spacing[a];
+    // Nowhere: not a number, or so far out that distances mean nothing. Searching would take long.
+    if (!(std::abs(xi) < 1e9)) return nobody;
+    nearest_node[a] = static_cast<int>(std::lround(xi));
+  }
+  const int ci = nearest_node[0], cj = D == 3 ? nearest_node[1] : 0, ck = nearest_node[D - 1];
   const int nx = grid_.nx(), ny = grid_.ny(), nz = grid_.nz();
   const std::uint64_t* uid = store.uid();
   std::uint32_t best = nobody;

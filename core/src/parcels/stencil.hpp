@@ -45,8 +45,10 @@ struct WallIndex {
 static inline WallIndex locate_vertical(Pack z, double lower, double inverse_spacing,
                                         std::int32_t cells) {
   Pack xi = (z - lower) * inverse_spacing;
-  xi = maximum(xi, broadcast(-1.0));
-  xi = minimum(xi, broadcast(cells + 1.0));
+  // The order of arguments lets a value that is not a number through to the weights, where it
+  // shows.
+  xi = maximum(broadcast(-1.0), xi);
+  xi = minimum(broadcast(cells + 1.0), xi);
   WallIndex index;
   IntPack k = floor_to_int(xi);
   k = k < -1 ? IntPack{} - 1 : k;
