@@ -1,0 +1,173 @@
+// Small operators, linked into the test, that behave in one known way each.
+#pragma once
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "coupling/operator_sequence.hpp"
+#include "pileus/numerics.hpp"
+#include "pileus/plugin.hpp"
+
+namespace pileus::test {
+
+/// The texts every operator must declare.
+inline void introduce(Declaration& d, const char* id) {
+  d.op.id = id;
+  d.op.kind = "test";
+  d.op.version = "1.0.0";
+  d.op.title = d.op.summary = d.op.authors = "test";
+  d.op.licence = "MIT";
+  d.op.form = PILEUS_FLOW;
+}
+
+/// An entry of the sequence from an operator class.
+template <class Op>
+coupling::OperatorEntry entry_of(const std::string& name) {
+  std::vector<std::string> complaints;
+  auto table = std::make_shared<host::OperatorTable>(host::read_operator(Op::table(), complaints));
+  if (!complaints.empty()) throw std::logic_error(complaints.front());
+  table->library = "the test";
+  return {name, table, host::ParameterValues(*table), 0};
+}
+
+/// Explicit Euler for dq/dt = −q that rejects steps above a parcel's own limit, 1 s / (1 + uid %
+/// 5).
+class FussyEuler : public Operator<FussyEuler> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.fussy_euler");
+    tracer = d.owns("passive_tracer", "1").intensive().range(0, 10).initial(1);
+  }
+  void apply(const pileus_step& step, Block block) const {
+    double* q = block.out(tracer);
+    block.each([&](auto p) {
+      q[p] -= step.dt * q[p];
+      if (step.dt > 1.0 / (1.0 + static_cast<double>(block.uid(p) % 5))) throw Retry("too long");
+    });
+  }
+
+ private:
+  Slot tracer;
+};
+
+/// Grows q by a keyed random factor where q > 1.
+class RandomGrowth : public Operator<RandomGrowth> {
+ public:
+  static inline std::atomic<int> parcels_seen = 0;
+  void describe(Declaration& d) {
+    introduce(d, "test.random_growth");
+    d.op.flags = PILEUS_RANDOM;
+    tracer = d.owns("passive_tracer", "1").intensive("matter").range(0, 1e6).initial(1);
+    matter = d.budget("matter");
+    d.active_if(0, "passive_tracer", PILEUS_GT, 1.0);
+    volume = d.reads("parcel_volume", "m3");
+  }
+  void apply(const pileus_step& step, Block block) const {
+    double* q = block.out(tracer);
+    const double* v = block.in(volume);
+    block.each([&](auto p) {
+      ++parcels_seen;
+      double u;
+      draw(step, block.uid(p), 0, 1, &u);
+      const double gain = q[p] > 1.0 ? step.dt * u : 0.0;
+      q[p] += gain;
+      block.book(matter, gain * v[p]);
+    });
+  }
+
+ private:
+  Slot tracer, volume;
+  Budget matter;
+};
+
+/// dx/dt = y, exactly, for x = specific humidity and y = passive tracer.
+class Drift : public Operator<Drift> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.drift");
+    x = d.owns("specific_humidity", "1").intensive().range(-10, 10).initial(1);
+    y = d.reads("passive_tracer", "1");
+  }
+  void apply(const pileus_step& step, Block block) const {
+    double* out = block.out(x);
+    const double* in = block.in(y);
+    block.each([&](auto p) { out[p] += step.dt * in[p]; });
+  }
+
+ private:
+  Slot x, y;
+};
+
+/// dy/dt = −x, exactly. Drift and Kick together are the harmonic oscillator x = cos t, y = −sin t.
+class Kick : public Operator<Kick> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.kick");
+    y = d.owns("passive_tracer", "1").intensive().range(-10, 10).initial(0);
+    x = d.reads("specific_humidity", "1");
+  }
+  void apply(const pileus_step& step, Block block) const {
+    double* out = block.out(y);
+    const double* in = block.in(x);
+    block.each([&](auto p) { out[p] -= step.dt * in[p]; });
+  }
+
+ private:
+  Slot x, y;
+};
+
+/// A stiff explicit decay that asks for sub-steps of at most 0.1 s.
+class Substepped : public Operator<Substepped> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.substepped");
+    tracer = d.owns("passive_tracer", "1").intensive().range(0, 10).initial(1);
+  }
+  double prepare(const pileus_step&, Block) { return 0.1; }
+  void apply(const pileus_step& step, Block block) const {
+    double* q = block.out(tracer);
+    block.each([&](auto p) { q[p] -= step.dt * q[p]; });
+  }
+
+ private:
+  Slot tracer;
+};
+
+/// A run of parcels of volume 2 at height 100 + p, uid 1 + p.
+struct ToyRun {
+  ToyRun(std::vector<coupling::OperatorEntry> entries, std::size_t parcels,
+         coupling::SequenceOptions options = {})
+      : sequence(std::move(entries), std::move(options)), store(3, sequence.required_scalars()) {
+    store.resize(parcels);
+    for (int c = 0; c < store.column_count(); ++c) std::fill_n(store.column(c), parcels, 0.0);
+    for (std::size_t p = 0; p < parcels; ++p) {
+      store.uid()[p] = 1 + p;
+      store.volume()[p] = 2.0;
+      store.position(2)[p] = 100.0 + static_cast<double>(p);
+    }
+    sequence.bind(store, {});
+    sequence.init({});
+  }
+  double* values(const char* name) { return store.scalar(store.find_scalar(name)); }
+  void step(std::uint64_t number, double dt) {
+    const coupling::StepTime at{number, static_cast<double>(number) * dt, dt};
+    sequence.apply_before_transport(at);
+    sequence.apply_after_transport(at);
+  }
+
+  coupling::OperatorSequence sequence;
+  parcels::Store store;
+};
+
+template <class... Ops>
+std::vector<coupling::OperatorEntry> entries_of(const std::vector<std::string>& names) {
+  std::vector<coupling::OperatorEntry> entries;
+  std::size_t i = 0;
+  (entries.push_back(entry_of<Ops>(names[i++])), ...);
+  return entries;
+}
+
+}  // namespace pileus::test
