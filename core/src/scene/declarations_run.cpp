@@ -207,7 +207,7 @@ const Table& operator_table() {
       .path = "operators",
       .doc = "Physics beyond the flow, by plugins, in the order in which it is coupled.",
       .keys = {value("use", &OperatorBlock::use, "1",
-                     "Identifier of the operator (org.pileus.saturation_adjustment) or path of its "
+                     "Identifier of the operator (org.example.kessler) or path of its "
                      "library.")
                    .must(),
                value("name", &OperatorBlock::name, "1", "Label in the plan, order and ledger.")

@@ -10,7 +10,7 @@ namespace pileus::scene {
 
 /// An operator that editors should know about.
 struct OperatorSchema {
-  std::string id;  // "org.pileus.saturation_adjustment"
+  std::string id;  // "org.example.kessler"
   std::string summary;
   std::vector<ParameterDeclaration> parameters;
 };
