@@ -32,35 +32,34 @@ inline constexpr int bracketed_newton_limit = 4200;
 /// and then descends monotonically and quadratically, and the safeguard never acts.
 ///
 /// Requires   f(low) ≤ 0 ≤ f(high), f increasing; `start` inside the bracket (else its middle)
-/// Ensures    |x − root| ≤ relative·|x| + one unit in the last place, low ≤ x ≤ high
+/// Ensures    low ≤ x ≤ high; the last Newton step was at most relative·|x| and was taken, or x is
+///            within one unit in the last place of where f changes sign
 /// Errors     converged == false when f returns NaN
 template <class F>
 Root bracketed_newton(F&& f, double low, double high, double start, double relative) {
   Root root;
   double x = start >= low && start <= high ? start : low + 0.5 * (high - low);
-  double step_before = high - low, step = step_before;
+  double step_before = 2.0 * (high - low), step = step_before;  // any first step may be taken
   for (root.iterations = 1; root.iterations <= bracketed_newton_limit; ++root.iterations) {
     const ValueAndSlope at = f(x);
     if (std::isnan(at.value)) break;
     root.x = x;
-    if (at.value == 0) {
-      root.converged = true;
-      break;
-    }
+    root.converged = at.value == 0;
+    if (root.converged) break;
     (at.value < 0 ? low : high) = x;
     const double newton = -at.value / at.slope;
     double next = x + newton;
-    const bool safe = next > low && next < high && std::abs(newton) <= 0.5 * std::abs(step_before);
-    if (!safe) next = low + 0.5 * (high - low);
-    step_before = step;
-    step = next - x;
-    // A Newton step below the tolerance bounds the error of an increasing convex or concave
-    // function; a step of a halved bracket bounds it for every other.
-    if (std::abs(newton) <= relative * std::abs(x) || next == x || !(next > low && next < high)) {
-      root.x = std::abs(newton) <= relative * std::abs(x) && safe ? next : x;
+    if (std::abs(newton) <= relative * std::abs(x)) {
+      root.x = next < low ? low : next > high ? high : next;
       root.converged = true;
       break;
     }
+    const bool safe = next > low && next < high && std::abs(newton) <= 0.5 * std::abs(step_before);
+    if (!safe) next = low + 0.5 * (high - low);
+    root.converged = !(next > low && next < high);  // nothing lies between the bracket's ends
+    if (root.converged) break;
+    step_before = step;
+    step = next - x;
     x = next;
   }
   return root;
