@@ -1,5 +1,7 @@
 #include "mesh/column_matrix.hpp"
 
+#include <algorithm>
+
 #include "mesh/vector_clones.hpp"
 
 namespace pileus::mesh {
@@ -13,7 +15,7 @@ constexpr int lanes = 8;
 struct Product {
   const double* matrix;
   std::size_t pitch;
-  int first, last;
+  const int *first, *last;  // of every eight rows
 };
 
 /// Rows [row, row + 8·Blocks) of `Columns` products; each sum runs over the columns in order.
@@ -21,7 +23,10 @@ template <int Columns, int Blocks>
 [[gnu::always_inline]] inline void multiply_block(const Product& m, std::size_t row,
                                                   const double* in, double* out) {
   Vector sum[Columns][Blocks] = {};
-  for (int k = m.first; k < m.last; ++k) {
+  const std::size_t group = row / lanes;
+  const int first = std::min(m.first[group], m.first[group + Blocks - 1]);
+  const int last = std::max(m.last[group], m.last[group + Blocks - 1]);
+  for (int k = first; k < last; ++k) {
     const auto* elements =
         reinterpret_cast<const Vector*>(m.matrix + std::size_t(k) * m.pitch + row);
     for (int c = 0; c < Columns; ++c) {
@@ -57,21 +62,24 @@ void multiply(const Product& m, const double* in, double* out, int count) {
 ColumnMatrix::ColumnMatrix(int nz, const std::function<double(int, int)>& element)
     : nz_(nz), elements_(std::size_t(nz + 1) * column_pitch(nz)) {
   elements_.fill(0);
-  const auto is_zero = [&](int column) {
-    for (int row = 0; row <= nz; ++row)
-      if ((*this)(row, column) != 0) return false;
-    return true;
-  };
   for (int column = 0; column <= nz; ++column)
     for (int row = 0; row <= nz; ++row)
       elements_[std::size_t(column) * column_pitch(nz) + std::size_t(row)] = element(row, column);
-  last_ = nz + 1;
-  while (first_ < last_ && is_zero(first_)) ++first_;
-  while (last_ > first_ && is_zero(last_ - 1)) --last_;
+  for (int begin = 0; begin <= nz; begin += lanes) {
+    int first = nz + 1, last = 0;
+    for (int column = 0; column <= nz; ++column)
+      for (int row = begin; row < std::min(begin + lanes, nz + 1); ++row)
+        if ((*this)(row, column) != 0) {
+          first = std::min(first, column);
+          last = column + 1;
+        }
+    first_.push_back(std::min(first, last));
+    last_.push_back(last);
+  }
 }
 
 void ColumnMatrix::apply(const double* in, double* out, int count) const {
-  multiply({elements_.data(), column_pitch(nz_), first_, last_}, in, out, count);
+  multiply({elements_.data(), column_pitch(nz_), first_.data(), last_.data()}, in, out, count);
 }
 
 }  // namespace pileus::mesh

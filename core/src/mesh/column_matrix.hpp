@@ -1,12 +1,13 @@
 // Dense linear operators on columns: sine and cosine transforms, vertical derivatives.
 //
-// A matrix product beats fast transforms here. FFTW's DST-I and DCT-I (logical length 2(n ± 1))
-// cost 130 ns for 13 levels and 400 ns for 65 on the machine these lines were written on; the
-// product below costs 3 and 40 ns, wins up to about 500 levels, takes every n_z alike and lets any
-// linear operation along z be one matrix.
+// A matrix product beats fast transforms at the heights in use. Measured with AVX-512 on a Zen 5
+// core, per column: product 6, 21, 75, 295, 1190 ns for 12, 32, 64, 128, 256 cells; FFTW's DST-I
+// (RODFT00, estimate mode) 94, 105, 186, 439, 938 ns. It also takes every n_z alike, where DST-I
+// and DCT-I of length n_z ± 1 want smooth n_z, and lets any linear operation along z be one matrix.
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "base/aligned_array.hpp"
 
@@ -21,7 +22,8 @@ inline std::size_t column_pitch(int nz) {
 class ColumnMatrix {
  public:
   ColumnMatrix() = default;
-  /// element(row, column), rows and columns 0 … n_z. Columns of zeros at either end are skipped.
+  /// element(row, column), rows and columns 0 … n_z. Leading and trailing columns that are zero in
+  /// a group of eight rows are skipped, so that a banded matrix costs little more than its band.
   ColumnMatrix(int nz, const std::function<double(int, int)>& element);
 
   /// out_c = M in_c for `count` columns (an even number), column c at [c*column_pitch(nz)].
@@ -36,7 +38,7 @@ class ColumnMatrix {
 
  private:
   int nz_ = 0;
-  int first_ = 0, last_ = 0;       // columns that are not all zero: [first_, last_)
+  std::vector<int> first_, last_;  // columns [first, last) that eight rows need
   AlignedArray<double> elements_;  // column by column, rows padded with zeros
 };
 

@@ -10,9 +10,10 @@
 
 namespace pileus::mesh {
 
-/// 3D: the inversion of Frey, Dritschel & Böing 2023 (J. Comput. Phys. 17, 100136, section 2.2) in
+/// 3D: the inversion of Frey, Dritschel & Böing 2023 (J. Comput. Phys. X 17, 100136) in
 /// the mixed sine/end-function form with solenoidal projection, and the tendency in flux form
 /// (tendency_3d.hpp states which quadrature makes the budget of the net vorticity exact).
+/// The horizontal mean of ζ, which a periodic box cannot have, is dropped.
 /// 2D: stream function ∇²ψ = ζ, u = −ψ_z, w = ψ_x in the same form, tendency ∂b/∂x.
 ///
 /// Nothing is allocated after construction unless the number of threads grows. Every bit of the

@@ -207,24 +207,28 @@ void Inversion3D::finish_row(int j, double* flow, FlowSummary* summary) {
     if (options_.zero_vertical_vorticity[0]) u_y[0] = d[levels];
     if (options_.zero_vertical_vorticity[1]) u_y[nz] = d[levels + nz];
     write_record(s, d, flow + grid_.node(grid_.column(i, j), -1) * Flow::width);
-    if (summary == nullptr) continue;
-    const auto slot = [&](int index) { return s + index * levels; };
-    const GradientColumns g{d,
-                            u_y,
-                            d + levels,
-                            slot(mode_slot::v_y),
-                            d + 2 * levels,
-                            slot(mode_slot::w_y),
-                            slot(mode_slot::xi),
-                            slot(mode_slot::eta),
-                            nz + 1};
-    FlowSummary column;
-    column.strain = largest_strain(g);
-    column.vorticity = std::sqrt(largest_squared_vorticity(g));
-    for (int f = 0; f < 3; ++f)
-      column.speed[std::size_t(f)] = largest_magnitude(slot(mode_slot::u + f), nz + 1);
-    merge_extrema(*summary, column);
+    if (summary != nullptr) merge_extrema(*summary, column_extrema(s, d));
   }
+}
+
+FlowSummary Inversion3D::column_extrema(const double* slots, const double* derivatives) const {
+  const int count = grid_.nz() + 1;
+  const auto slot = [&](int index) { return slots + index * levels_; };
+  const GradientColumns g{.u_x = derivatives,
+                          .u_y = slot(mode_slot::u_y),
+                          .v_x = derivatives + levels_,
+                          .v_y = slot(mode_slot::v_y),
+                          .w_x = derivatives + 2 * levels_,
+                          .w_y = slot(mode_slot::w_y),
+                          .xi = slot(mode_slot::xi),
+                          .eta = slot(mode_slot::eta),
+                          .levels = count};
+  FlowSummary column;
+  column.strain = largest_strain(g);
+  column.vorticity = std::sqrt(largest_squared_vorticity(g));
+  for (int f = 0; f < 3; ++f)
+    column.speed[std::size_t(f)] = largest_magnitude(slot(mode_slot::u + f), count);
+  return column;
 }
 
 void Inversion3D::write_record(const double* slots, const double* derivatives,

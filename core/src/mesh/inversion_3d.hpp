@@ -10,7 +10,8 @@ namespace pileus::mesh {
 
 /// Three sweeps over the mesh, each in pieces that stay in the cache: rows forward along x; strips
 /// of a wavenumber k and its conjugate forward along y, through all their columns and back along
-/// y; rows back along x into the flow records.
+/// y; rows back along x into the flow records. Modes at the Nyquist wavenumber of an even count
+/// have no derivative on the mesh and hence no flow; the filter would leave 2e-16 of them.
 class Inversion3D {
  public:
   Inversion3D(const Grid<3>& grid, const FlowOptions& options);
@@ -29,6 +30,7 @@ class Inversion3D {
   void solve_strip(int i, std::array<double, 2> wind);
   void solve_mode(int i, int j, std::array<double, 2> wind, const Strip& strip);
   void finish_row(int j, double* flow, FlowSummary* summary);
+  FlowSummary column_extrema(const double* slots, const double* derivatives) const;
   void write_record(const double* slots, const double* derivatives, double* record) const;
 
   Grid<3> grid_;

@@ -7,8 +7,8 @@
 
 namespace pileus::mesh {
 
-/// Material tendency of the vorticity on the nodes (Frey, Dritschel & Böing 2023, eq. 8 rewritten
-/// with ∇·ω = 0): Dω_i/Dt = ∇·((ω + f) u_i) + buoyancy terms, that is
+/// Material tendency of the vorticity on the nodes (ω·∇u + f·∇u plus the curl of the buoyancy,
+/// rewritten with ∇·ω = ∇·f = 0): Dω_i/Dt = ∇·((ω + f) u_i) + buoyancy terms, that is
 ///   Dξ/Dt = ∂x[(ξ+f_x)u]     + ∂y[(η+f_y)u + b] + ∂z[(ζ+f_z)u]
 ///   Dη/Dt = ∂x[(ξ+f_x)v − b] + ∂y[(η+f_y)v]     + ∂z[(ζ+f_z)v]
 ///   Dζ/Dt = ∂x[(ξ+f_x)w]     + ∂y[(η+f_y)w]     + ∂z[(ζ+f_z)w].

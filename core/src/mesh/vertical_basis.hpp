@@ -2,8 +2,8 @@
 //
 // f(z) = f(z0) φ−(z) + f(z1) φ+(z) + Σ_{m=1}^{n_z−1} a_m sin(mπ(z − z0)/L), where the end functions
 // solve φ'' = K²φ and are 1 at their own wall and 0 at the other (Frey, Dritschel & Böing 2023,
-// section 2.2). Their curvature is the one a harmonic field has at the wall, so that a_m decays
-// like m⁻³ or faster and no tridiagonal system is left to solve.
+// J. Comput. Phys. X 17, 100136). Their curvature is the one a harmonic field has at the wall, so
+// that a_m decays like m⁻³ or faster and no tridiagonal system is left to solve.
 #pragma once
 #include <vector>
 
