@@ -12,7 +12,7 @@ using Vector = std::array<double, 3>;
 inline constexpr double pi = std::numbers::pi;
 
 /// Beltrami flow ω = αu with k = l = 2, m = 1, α = 3 on [−π/2, π/2]³ (Frey, Dritschel & Böing
-/// 2023, section 4.1); ζ = w = 0 on the walls.
+/// 2023, J. Comput. Phys. X 17, 100136); ζ = w = 0 on the walls.
 struct Beltrami {
   static Grid<3> grid(int nx, int ny, int nz) {
     return {{nx, ny, nz}, {-pi / 2, -pi / 2, -pi / 2}, {pi, pi, pi}};
