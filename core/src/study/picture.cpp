@@ -57,7 +57,13 @@ Range range_of(const SectionPicture& picture) {
     range.high = std::max(std::abs(range.low), std::abs(range.high));
     range.low = -range.high;
   }
-  if (range.low == range.high) range.high = range.low + (range.low == 0 ? 1 : std::abs(range.low));
+  // A field that is constant but for rounding is shown as constant.
+  const double largest = std::max(std::abs(range.low), std::abs(range.high));
+  const double narrowest = largest > 0 ? 1e-5 * largest : 1;
+  if (range.high - range.low < narrowest) {
+    const double middle = 0.5 * (range.low + range.high);
+    range = {middle - 0.5 * narrowest, middle + 0.5 * narrowest};
+  }
   return range;
 }
 
@@ -65,7 +71,7 @@ std::string data_block(std::size_t index, const SectionPanel& panel) {
   std::string block = fmt::format("$panel{} << EOD\n", index);
   for (std::size_t row = 0; row < panel.rows; ++row) {
     for (std::size_t column = 0; column < panel.columns; ++column) {
-      fmt::format_to(std::back_inserter(block), "{:.6g} ",
+      fmt::format_to(std::back_inserter(block), "{:.7g} ",
                      panel.values[row * panel.columns + column]);
     }
     block += '\n';
@@ -129,7 +135,7 @@ std::string gnuplot_script(const SectionPicture& picture) {
   for (std::size_t p = 0; p < picture.panels.size(); ++p)
     script += data_block(p, picture.panels[p]);
   script += picture.diverging ? diverging_palette : sequential_palette;
-  script += fmt::format("set cbrange [{:.6g}:{:.6g}]\n", range.low, range.high);
+  script += fmt::format("set cbrange [{:.10g}:{:.10g}]\n", range.low, range.high);
   script += "set tics out nomirror\nset border 3 lc rgb '#444444'\nset format cb '%.3g'\n";
   script += fmt::format("set label 1 {} noenhanced at screen {:.5f},{:.5f} left font ',15'\n",
                         quoted(picture.title), left_margin / width, 1 - 24 / height);

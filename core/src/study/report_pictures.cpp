@@ -18,6 +18,7 @@ namespace {
 /// Pixels across a section picture panel are about this; coarser meshes are refined to it.
 constexpr std::size_t panel_points = 400;
 constexpr std::size_t curves_per_picture = 6;
+constexpr std::size_t longest_title = 48;  // characters
 
 /// A unit for reading: kilometres beyond 2 km, grams per kilogram for mixing ratios.
 struct Display {
@@ -28,7 +29,8 @@ Display display_length(double extent) {
   return extent >= 2000 ? Display{1e-3, "km"} : Display{1, "m"};
 }
 Display display_value(const StoredVariable& variable) {
-  if (variable.units == "kg kg-1" || variable.units == "kg/kg") return {1e3, "g kg⁻¹"};
+  const bool is_mass_fraction = variable.name.starts_with("mass_fraction") && variable.units == "1";
+  if (variable.units == "kg kg-1" || is_mass_fraction) return {1e3, "g kg⁻¹"};
   return {1, pretty_units(variable.units)};
 }
 
@@ -37,7 +39,10 @@ std::string with_units(const std::string& quantity, const std::string& units) {
 }
 
 std::string readable_name(const StoredVariable& variable) {
-  if (!variable.long_name.empty()) return variable.long_name;
+  // A definition of several words more than a title can hold stays with the file.
+  if (!variable.long_name.empty() && variable.long_name.size() <= longest_title) {
+    return variable.long_name;
+  }
   std::string name = variable.name;
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;

@@ -89,8 +89,9 @@ TEST_F(Picture, diverging_scale_is_symmetric_about_zero) {
   EXPECT_NE(gnuplot_script(picture).find("set cbrange [-3:3]"), std::string::npos);
 }
 
-TEST_F(Picture, a_constant_field_still_has_a_colour_scale) {
-  SectionPicture picture{"", "", "", "", false, {{"", 2, 2, 0, 1, 0, 1, {5, 5, 5, 5}}}};
+TEST_F(Picture, a_field_constant_to_rounding_still_has_a_colour_scale) {
+  SectionPicture picture{"", "",    "",
+                         "", false, {{"", 2, 2, 0, 1, 0, 1, {5, 5, 5, std::nextafter(5.0, 6)}}}};
   draw(gnuplot_script(picture), size_of(picture), folder_ / "constant");
   EXPECT_EQ(contents(folder_ / "constant.png").substr(1, 3), "PNG");
 }
