@@ -38,10 +38,10 @@ class AlignedArray {
     size_ = size;
   }
 
-  /// Sets the size and keeps the common prefix; grows by at least an eighth.
+  /// Sets the size and keeps the common prefix.
   void resize(std::size_t size) {
     if (padded(size) > capacity_) {
-      const std::size_t room = padded(size + size / 8);
+      const std::size_t room = padded(size);
       std::unique_ptr<T[], Free> grown(allocate(room));
       if (size_ > 0) std::memcpy(grown.get(), data_.get(), size_ * sizeof(T));
       data_ = std::move(grown);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* liquid_name = "mass_fraction_of_cloud_liquid_water_in_air";
-constexpr const char* water_name = "mass_fraction_of_total_water_in_air";
+constexpr const char* water_name = "total_water_mass_fraction";
 
 struct StateSums {
   double volume = 0, buoyancy = 0, potential = 0, enstrophy = 0;

@@ -84,9 +84,9 @@ void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
 template <int D>
 void SimulationOf<D>::initialise(const scene::Scene& scene) {
   fill_initial_state(scene, grid_, *store_, wind_);
-  upkeep_.reorder(*store_, times_);
-  tile_begin_ = upkeep_.tile_begin();
   build_transport({false, false});
+  upkeep_.reorder(*store_, transport_->offsets(), times_);
+  tile_begin_ = upkeep_.tile_begin();
   build_transport(walls_without_vorticity());
 }
 

@@ -49,13 +49,20 @@ std::size_t divide_column(double* column, int nz, int width) {
 }  // namespace
 
 template <int D>
+std::size_t SupportOffsets<D>::capacity() const {
+  std::size_t smallest = data_[0].size();
+  for (const auto& component : data_) smallest = std::min(smallest, component.size());
+  return smallest;
+}
+
+template <int D>
 void SupportOffsets<D>::resize(std::size_t parcels) {
-  for (auto& component : data_) component.discard_and_resize(parcels + parcels / 8 + read_ahead);
+  for (auto& component : data_) component.discard_and_resize(parcels + parcels / 32 + read_ahead);
 }
 
 template <int D>
 void SupportOffsets<D>::update(const Store& store) {
-  if (store.size() + read_ahead > data_[0].size()) resize(store.size());
+  if (store.size() + read_ahead > capacity()) resize(store.size());
   const double* shape[D == 3 ? 6 : 3];
   double* offset[components];
   for (int c = 0; c < store.shape_components(); ++c) shape[c] = store.shape(c);

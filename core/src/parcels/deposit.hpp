@@ -23,9 +23,10 @@ class SupportOffsets {
   const double* component(int c) const { return data_[static_cast<std::size_t>(c)].data(); }
   /// The arrays as scratch memory between two updates.
   double* scratch(int c) { return data_[static_cast<std::size_t>(c)].data(); }
+  AlignedArray<double>& scratch_array(int c) { return data_[static_cast<std::size_t>(c)]; }
   void resize(std::size_t parcels);
   /// Parcels there is room for, vector overhang included.
-  std::size_t capacity() const { return data_[0].size(); }
+  std::size_t capacity() const;
   std::size_t allocated_bytes() const;
 
  private:

@@ -24,9 +24,16 @@ Store::Store(int dimension, std::vector<Scalar> scalars)
   resize(0);
 }
 
+/// Room with a margin, so that a slowly growing population seldom allocates.
+void Store::reserve(std::size_t parcels) {
+  if (parcels <= capacity_ && capacity_ > 0) return;
+  capacity_ = capacity_ == 0 ? parcels + parcels / 32 : parcels + parcels / 8;
+  for (auto& column : columns_) column.resize(capacity_ + read_ahead);
+  uid_.resize(capacity_ + read_ahead);
+}
+
 void Store::resize(std::size_t size) {
-  for (auto& column : columns_) column.resize(size + read_ahead);
-  uid_.resize(size + read_ahead);
+  reserve(size);
   size_ = size;
 }
 
@@ -49,37 +56,37 @@ std::string Store::column_name(int index) const {
                          : names_2d[static_cast<std::size_t>(index)];
 }
 
-void Store::gather(const std::vector<std::uint32_t>& source) {
+void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double>& spare) {
+  constexpr std::size_t chunk = 16384;  // pure copying: fewer, longer tasks
   const std::size_t count = source.size();
+  reserve(count);
+  if (spare.size() < capacity_ + read_ahead) spare.discard_and_resize(capacity_ + read_ahead);
   for (int c = 0; c < state_columns_; ++c) {
     auto& column = columns_[static_cast<std::size_t>(c)];
-    spare_.discard_and_resize(count + read_ahead);
     const double* from = column.data();
-    double* to = spare_.data();
+    double* to = spare.data();
     parallel_chunks(
         count,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t p = begin; p < end; ++p) to[p] = from[source[p]];
         },
-        16384);
-    column.swap(spare_);
+        chunk);
+    column.swap(spare);
   }
-  spare_uid_.discard_and_resize(count + read_ahead);
+  spare_uid_.discard_and_resize(capacity_ + read_ahead);
   parallel_chunks(
       count,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) spare_uid_[p] = uid_[source[p]];
       },
-      16384);
+      chunk);
   uid_.swap(spare_uid_);
-  for (int c = state_columns_; c < column_count(); ++c)
-    columns_[static_cast<std::size_t>(c)].resize(count + read_ahead);
   size_ = count;
 }
 
 std::size_t Store::allocated_bytes() const {
   std::size_t bytes =
-      uid_.allocated_bytes() + spare_.allocated_bytes() + spare_uid_.allocated_bytes();
+      uid_.allocated_bytes() + spare_uid_.allocated_bytes();
   for (const auto& column : columns_) bytes += column.allocated_bytes();
   return bytes;
 }

@@ -34,7 +34,7 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
   {
     const PhaseScope scope(times, Phase::sort);
     list_survivors();
-    store.gather(source_);
+    store.gather(source_, offsets.scratch_array(0));
   }
   {
     const PhaseScope scope(times, Phase::split);
@@ -51,13 +51,13 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
 }
 
 template <int D>
-void Upkeep<D>::reorder(Store& store, PhaseTimes& times) {
+void Upkeep<D>::reorder(Store& store, SupportOffsets<D>& offsets, PhaseTimes& times) {
   const PhaseScope scope(times, Phase::sort);
   order_.sort(store);
   splits_.assign(store.size(), 0);
   merge_.forget();
   list_survivors();
-  store.gather(source_);
+  store.gather(source_, offsets.scratch_array(0));
 }
 
 template <int D>

@@ -27,8 +27,8 @@ class Upkeep {
   /// scratch and hold nothing afterwards. Derived scalars are undefined afterwards.
   UpkeepCounts run(Store& store, SupportOffsets<D>& offsets, std::uint64_t step, PhaseTimes& times);
 
-  /// Puts the parcels into cell order without changing any.
-  void reorder(Store& store, PhaseTimes& times);
+  /// Puts the parcels into cell order without changing any; offsets are scratch here too.
+  void reorder(Store& store, SupportOffsets<D>& offsets, PhaseTimes& times);
 
   /// Parcels of tile t are [tile_begin()[t], tile_begin()[t + 1]).
   const std::vector<std::size_t>& tile_begin() const { return tile_begin_; }

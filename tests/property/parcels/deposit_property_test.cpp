@@ -30,7 +30,7 @@ struct Cloud {
                               spread, random);
     Upkeep<D> upkeep(grid, deposit.tiling(), 0, SplitCriterion<D>::make(grid, 4, 2.89));
     PhaseTimes times;
-    upkeep.reorder(store, times);
+    upkeep.reorder(store, offsets, times);
     tile_begin = upkeep.tile_begin();
   }
   std::vector<const double*> values() const {

@@ -19,7 +19,7 @@ struct Gridded {
       : grid(mesh_grid), store(parcel_store), deposit(grid) {
     Upkeep<D> upkeep(grid, deposit.tiling(), 0, SplitCriterion<D>::make(grid, 4, 2.89));
     PhaseTimes times;
-    upkeep.reorder(store, times);
+    upkeep.reorder(store, offsets, times);
     tile_begin = upkeep.tile_begin();
     offsets.update(store);
     record.discard_and_resize(grid.nodes() * mesh::DepositRecord<D>::width);
