@@ -33,7 +33,8 @@ function(pileus_add_plugin name)
     target_link_libraries(${name} PRIVATE pileus_build)
   endif()
   # Same bits on every machine and with every vector width: no contraction into fused operations.
-  target_compile_options(${name} PRIVATE -ffp-contract=off
+  # Exception flags and errno are nobody's business; without them comparisons become vector code.
+  target_compile_options(${name} PRIVATE -ffp-contract=off -fno-trapping-math -fno-math-errno
                                          $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
   target_link_options(
     ${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--version-script=${PILEUS_PLUGIN_SCRIPT}

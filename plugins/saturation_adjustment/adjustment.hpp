@@ -3,6 +3,8 @@
 #include <pileus/numerics.hpp>
 #include <pileus/thermo.hpp>
 
+#include <cstdint>
+
 namespace pileus::saturation {
 
 /// A parcel's equilibrium.
@@ -59,6 +61,19 @@ struct IdealAir {
         surface_humidity * numerics::vector_exp((base_height - height) / scale_height);
     const double excess = total - saturated;
     return excess > 0.0 ? excess : 0.0;
+  }
+
+  /// Total buoyancy b = b_l + G q_l (m s-2) and liquid water of `count` parcels; no array overlaps
+  /// another.
+  void diagnose(std::int64_t count, const double* __restrict height,
+                const double* __restrict buoyancy_l, const double* __restrict total,
+                double* __restrict buoyancy, double* __restrict wet) const {
+    const IdealAir air = *this;  // a copy the stores below cannot be thought to change
+    for (std::int64_t p = 0; p < count; ++p) {
+      const double q = air.liquid(height[p], total[p]);
+      wet[p] = q;
+      buoyancy[p] = buoyancy_l[p] + air.latent_buoyancy * q;
+    }
   }
 };
 

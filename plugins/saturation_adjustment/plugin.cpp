@@ -149,15 +149,8 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   void diagnose_ideal(Block block) const {
     const IdealAir air{value(surface_humidity), value(base_height), value(scale_height),
                        latent_buoyancy_};
-    const double* z = block.in(height);
-    const double* dry = block.in(buoyancy_l);
-    const double* total = block.in(total_water);
-    double* b = block.out(buoyancy);
-    double* wet = block.out(liquid);
-    block.each([&](auto p) {
-      wet[p] = air.liquid(z[p], total[p]);
-      b[p] = dry[p] + air.latent_buoyancy * wet[p];
-    });
+    air.diagnose(block.count(), block.in(height), block.in(buoyancy_l), block.in(total_water),
+                 block.out(buoyancy), block.out(liquid));
   }
 
   void diagnose_real(Block block) const {

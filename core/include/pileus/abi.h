@@ -239,7 +239,8 @@ typedef struct pileus_operator {
    * *dt_limit (comes in as infinity); or NULL */
   pileus_status (*prepare)(void* self, const pileus_step*, const pileus_block* whole,
                            double* dt_limit, pileus_error*);
-  /* [block] derived quantities from the others; pure; in every Runge-Kutta stage; or NULL */
+  /* [block] derived quantities of all parcels (active is NULL) from the others; pure; in every
+   * Runge-Kutta stage; or NULL */
   pileus_status (*diagnose)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
   /* [block] advance by step->dt; NULL: CLOSURE */
   pileus_status (*apply)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
