@@ -73,8 +73,10 @@ VariableShape RecordFile::shape(std::vector<hid_t> scales) const {
     shape.chunk.push_back(axis.values.size());
   }
   if (!axes_.empty() && record_bytes > largest_chunk_bytes) {
-    const std::size_t slab_bytes = record_bytes / axes_.front().values.size();
-    shape.chunk[1] = std::max<std::size_t>(1, largest_chunk_bytes / slab_bytes);
+    // Slabs of nearly equal thickness: a thin last one would take the room of a full one.
+    const std::size_t levels = axes_.front().values.size();
+    const std::size_t slabs = std::min(levels, record_bytes / largest_chunk_bytes + 1);
+    shape.chunk[1] = (levels + slabs - 1) / slabs;
   }
   return shape;
 }

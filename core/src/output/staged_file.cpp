@@ -17,19 +17,35 @@ namespace {
 
 constexpr char journal_magic[8] = {'P', 'I', 'L', 'E', 'U', 'S', 'J', '1'};
 
-/// Journal: this header, then page_count times {offset, bytes, content}, then the SHA-256 of all
+/// Journal: this header, then piece_count times {offset, bytes, content}, then the SHA-256 of all
 /// that. Native byte order: it lives for milliseconds on one machine.
 struct JournalHeader {
   char magic[8];
-  std::uint64_t committed_bytes, final_bytes, page_count;
+  std::uint64_t committed_bytes, final_bytes, piece_count;
 };
-struct PageHeader {
+struct PieceHeader {
   std::uint64_t offset, bytes;
 };
 
+/// Calls use(offset, bytes, content) for each piece of a complete journal.
+template <class Use>
+void for_each_piece(const std::vector<std::byte>& journal, Use&& use) {
+  JournalHeader header;
+  std::memcpy(&header, journal.data(), sizeof header);
+  const std::byte* at = journal.data() + sizeof header;
+  for (std::uint64_t n = 0; n < header.piece_count; ++n) {
+    PieceHeader piece;
+    std::memcpy(&piece, at, sizeof piece);
+    at += sizeof piece;
+    use(piece.offset, piece.bytes, at);
+    at += piece.bytes;
+  }
+}
+
 void append_bytes(std::vector<std::byte>& to, const void* data, std::size_t bytes) {
-  const auto* first = static_cast<const std::byte*>(data);
-  to.insert(to.end(), first, first + bytes);
+  const std::size_t before = to.size();
+  to.resize(before + bytes);
+  std::memcpy(to.data() + before, data, bytes);
 }
 
 bool journal_is_complete(const std::string& text) {
@@ -79,7 +95,7 @@ bool StagedFile::read(std::uint64_t offset, std::size_t bytes, void* buffer) con
   const std::int64_t count = read_fully(file_.get(), to, bytes, offset);
   if (count < 0) return false;
   std::memset(to + count, 0, bytes - static_cast<std::size_t>(count));
-  const std::uint64_t end = std::min(offset + bytes, committed_);
+  const std::uint64_t end = offset + bytes;
   for (auto page = held_.lower_bound(offset / page_bytes);
        page != held_.end() && page->first * page_bytes < end; ++page) {
     const std::uint64_t page_start = page->first * page_bytes;
@@ -91,14 +107,22 @@ bool StagedFile::read(std::uint64_t offset, std::size_t bytes, void* buffer) con
   return true;
 }
 
-StagedFile::Page& StagedFile::held_page(std::uint64_t index) {
-  Page& page = held_[index];
-  if (!page.content) {
-    page.content = std::make_unique<std::byte[]>(page_bytes);
-    if (read_fully(file_.get(), page.content.get(), page_bytes, index * page_bytes) < 0)
-      failure_ = errno;
+void StagedFile::hold(std::uint64_t offset, std::size_t bytes, const std::byte* from, Role role) {
+  const std::uint64_t end = offset + bytes;
+  for (std::uint64_t at = offset; at < end && failure_ == 0;) {
+    const std::uint64_t index = at / page_bytes, page_start = index * page_bytes;
+    const std::uint64_t stop = std::min(end, page_start + page_bytes);
+    Page& page = held_[index];
+    if (!page.content) {
+      page.content = std::make_unique<std::byte[]>(page_bytes);
+      const bool whole = stop - at == page_bytes;
+      if (!whole && read_fully(file_.get(), page.content.get(), page_bytes, page_start) < 0)
+        failure_ = errno;
+    }
+    page.role = std::max(page.role, role);
+    std::memcpy(page.content.get() + (at - page_start), from + (at - offset), stop - at);
+    at = stop;
   }
-  return page;
 }
 
 void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buffer, Role role) {
@@ -107,19 +131,39 @@ void StagedFile::write(std::uint64_t offset, std::size_t bytes, const void* buff
     failure_ = EBADF;
     return;
   }
-  const auto* from = static_cast<const std::byte*>(buffer);
   const std::uint64_t end = offset + bytes;
-  std::uint64_t at = offset;
-  while (at < std::min(end, committed_)) {
-    const std::uint64_t index = at / page_bytes, page_start = index * page_bytes;
-    const std::uint64_t stop = std::min({end, committed_, page_start + page_bytes});
-    Page& page = held_page(index);
-    page.role = std::max(page.role, role);
-    std::memcpy(page.content.get() + (at - page_start), from + (at - offset), stop - at);
-    at = stop;
-  }
-  if (at < end && !write_fully(file_.get(), from + (at - offset), end - at, at)) failure_ = errno;
   size_ = std::max(size_, end);
+  if (offset >= committed_ && bytes >= direct_bytes && !holds_part_of(offset, end)) {
+    if (!write_fully(file_.get(), buffer, bytes, offset)) failure_ = errno;
+    return;
+  }
+  hold(offset, bytes, static_cast<const std::byte*>(buffer), role);
+}
+
+bool StagedFile::holds_part_of(std::uint64_t begin, std::uint64_t end) const {
+  const auto page = held_.lower_bound(begin / page_bytes);
+  return page != held_.end() && page->first * page_bytes < end;
+}
+
+bool StagedFile::write_held_beyond(std::uint64_t begin) const {
+  std::vector<std::byte> run;  // neighbouring pages go to the file in one call
+  std::uint64_t run_start = begin;
+  auto flush = [&] {
+    return run.empty() || write_fully(file_.get(), run.data(), run.size(), run_start);
+  };
+  for (auto page = held_.lower_bound(begin / page_bytes); page != held_.end(); ++page) {
+    const std::uint64_t page_start = page->first * page_bytes;
+    const std::uint64_t from = std::max(begin, page_start);
+    const std::uint64_t stop = std::min(size_, page_start + page_bytes);
+    if (from >= stop) continue;
+    if (from != run_start + run.size()) {
+      if (!flush()) return false;
+      run.clear();
+      run_start = from;
+    }
+    append_bytes(run, page->second.content.get() + (from - page_start), stop - from);
+  }
+  return flush();
 }
 
 void StagedFile::commit(bool durable) {
@@ -139,7 +183,7 @@ void StagedFile::commit(bool durable) {
 }
 
 void StagedFile::commit_new(bool durable) {
-  if (::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0 ||
+  if (!write_held_beyond(0) || ::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0 ||
       (durable && ::fsync(file_.get()) != 0))
     throw file_error(path_, "write", errno);
   // A journal left by an earlier file of this name must not be applied to the new one.
@@ -150,21 +194,30 @@ void StagedFile::commit_new(bool durable) {
 
 std::vector<std::byte> StagedFile::journal() const {
   std::vector<std::byte> text;
-  text.reserve(sizeof(JournalHeader) + held_.size() * (page_bytes + sizeof(PageHeader)) + 32);
+  text.reserve(sizeof(JournalHeader) + held_.size() * (page_bytes + sizeof(PieceHeader)) + 32);
   JournalHeader header{{}, committed_, size_, 0};
   std::memcpy(header.magic, journal_magic, sizeof journal_magic);
-  const std::uint64_t end = std::min(committed_, size_);
-  for (const auto& [index, page] : held_)
-    if (index * page_bytes < end) ++header.page_count;
   append_bytes(text, &header, sizeof header);
-  for (const Role role : {Role::data, Role::index, Role::header})
+  const std::uint64_t end = std::min(committed_, size_);
+  for (const Role role : {Role::data, Role::index, Role::header}) {
+    PieceHeader piece{0, 0};  // neighbouring pages make one piece
+    std::size_t piece_at = 0;
     for (const auto& [index, page] : held_) {
       const std::uint64_t start = index * page_bytes;
       if (page.role != role || start >= end) continue;
-      const PageHeader page_header{start, std::min(page_bytes, end - start)};
-      append_bytes(text, &page_header, sizeof page_header);
-      append_bytes(text, page.content.get(), page_header.bytes);
+      if (piece.bytes == 0 || start != piece.offset + piece.bytes) {
+        piece = {start, 0};
+        piece_at = text.size();
+        append_bytes(text, &piece, sizeof piece);
+        ++header.piece_count;
+      }
+      const std::uint64_t bytes = std::min(page_bytes, end - start);
+      append_bytes(text, page.content.get(), bytes);
+      piece.bytes += bytes;
+      std::memcpy(text.data() + piece_at, &piece, sizeof piece);
     }
+  }
+  std::memcpy(text.data(), &header, sizeof header);
   const Sha256::Digest digest = Sha256().update(text.data(), text.size()).finish();
   append_bytes(text, digest.data(), digest.size());
   return text;
@@ -173,15 +226,11 @@ std::vector<std::byte> StagedFile::journal() const {
 void StagedFile::apply(const std::vector<std::byte>& journal) {
   JournalHeader header;
   std::memcpy(&header, journal.data(), sizeof header);
-  const std::byte* at = journal.data() + sizeof header;
-  for (std::uint64_t page = 0; page < header.page_count; ++page) {
-    PageHeader page_header;
-    std::memcpy(&page_header, at, sizeof page_header);
-    at += sizeof page_header;
-    if (!write_fully(file_.get(), at, page_header.bytes, page_header.offset))
-      throw file_error(path_, "write", errno);
-    at += page_header.bytes;
-  }
+  for_each_piece(journal,
+                 [this](std::uint64_t offset, std::size_t bytes, const std::byte* content) {
+                   if (!write_fully(file_.get(), content, bytes, offset))
+                     throw file_error(path_, "write", errno);
+                 });
   if (::ftruncate(file_.get(), static_cast<off_t>(header.final_bytes)) != 0)
     throw file_error(path_, "set the size", errno);
 }
@@ -189,7 +238,8 @@ void StagedFile::apply(const std::vector<std::byte>& journal) {
 void StagedFile::commit_update(bool durable) {
   const std::vector<std::byte> changes = journal();
   const std::filesystem::path beside = journal_path();
-  // New bytes have to be on the disk before the journal that refers to them.
+  // New bytes have to be in the file before the journal that refers to them.
+  if (!write_held_beyond(committed_)) throw file_error(path_, "write", errno);
   if (durable && ::fsync(file_.get()) != 0) throw file_error(path_, "sync", errno);
   {
     const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC, "write");
@@ -230,14 +280,10 @@ void StagedFile::finish_interrupted_commit() {
 void StagedFile::look_through(const std::vector<std::byte>& journal) {
   JournalHeader header;
   std::memcpy(&header, journal.data(), sizeof header);
-  const std::byte* at = journal.data() + sizeof header;
-  for (std::uint64_t page = 0; page < header.page_count; ++page) {
-    PageHeader page_header;
-    std::memcpy(&page_header, at, sizeof page_header);
-    at += sizeof page_header;
-    std::memcpy(held_page(page_header.offset / page_bytes).content.get(), at, page_header.bytes);
-    at += page_header.bytes;
-  }
+  for_each_piece(journal,
+                 [this](std::uint64_t offset, std::size_t bytes, const std::byte* content) {
+                   hold(offset, bytes, content, Role::data);
+                 });
   committed_ = size_ = header.final_bytes;
 }
 

@@ -1,7 +1,7 @@
 // A file whose changes happen all at once or not at all, whatever ends the process in between.
 //
-// New bytes beyond the committed end go straight to the file, where nobody looks yet; changes of
-// bytes that exist are held back in memory. A commit writes those to a redo journal beside the
+// New bytes beyond the committed end go to the file, where nobody looks yet; changes of bytes that
+// exist are held back in memory. A commit writes those to a redo journal beside the
 // file, applies them and removes the journal. A process that dies before the journal is complete
 // leaves the old content, one that dies later leaves a journal from which the next opening
 // finishes the change. A full disk shows before anything that exists was touched.
@@ -58,6 +58,9 @@ class StagedFile {
 
  private:
   static constexpr std::uint64_t page_bytes = 4096;
+  /// New pieces from this size on go to the file at once, smaller ones are collected until the
+  /// commit: HDF5 writes its metadata in hundreds of bytes.
+  static constexpr std::uint64_t direct_bytes = 65536;
   struct Page {
     std::unique_ptr<std::byte[]> content;
     Role role = Role::data;  // the last of those written to it
@@ -70,7 +73,10 @@ class StagedFile {
   void finish_interrupted_commit();
   /// Shows a reader the content the journal leads to, without touching the file.
   void look_through(const std::vector<std::byte>& journal);
-  Page& held_page(std::uint64_t index);
+  void hold(std::uint64_t offset, std::size_t bytes, const std::byte* from, Role role);
+  bool holds_part_of(std::uint64_t begin, std::uint64_t end) const;
+  /// Writes the held bytes at and beyond `begin`; false with errno set when the system refuses.
+  bool write_held_beyond(std::uint64_t begin) const;
   void commit_new(bool durable);
   void commit_update(bool durable);
   std::vector<std::byte> journal() const;

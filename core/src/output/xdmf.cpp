@@ -62,18 +62,20 @@ std::string attribute(const Variable& variable, const std::string& item) {
       escaped(variable.name), item);
 }
 
-/// Origin and spacing, slowest axis first; an axis of one node gets spacing 1.
+/// Origin and spacing of a three-dimensional mesh, slowest axis first; an axis of one node gets
+/// spacing 1. Two-dimensional fields lie in the plane of the first two coordinates, as the X_Y
+/// points of two-dimensional parcels and ParaView's netCDF reader have it.
 std::string regular_geometry(const std::vector<Axis>& axes) {
-  std::vector<double> origin, spacing;
+  std::vector<double> origin(3 - axes.size(), 0.0), spacing(3 - axes.size(), 1.0);
   for (const Axis& axis : axes) {
     origin.push_back(axis.values.front());
     spacing.push_back(axis.values.size() > 1 ? axis.values[1] - axis.values[0] : 1.0);
   }
   return fmt::format(
-      "<Geometry GeometryType=\"{}\"><DataItem Dimensions=\"{}\" Format=\"XML\">{}</DataItem>"
-      "<DataItem Dimensions=\"{}\" Format=\"XML\">{}</DataItem></Geometry>\n",
-      axes.size() == 3 ? "ORIGIN_DXDYDZ" : "ORIGIN_DXDY", axes.size(), fmt::join(origin, " "),
-      axes.size(), fmt::join(spacing, " "));
+      "<Geometry GeometryType=\"ORIGIN_DXDYDZ\">"
+      "<DataItem Dimensions=\"3\" Format=\"XML\">{}</DataItem>"
+      "<DataItem Dimensions=\"3\" Format=\"XML\">{}</DataItem></Geometry>\n",
+      fmt::join(origin, " "), fmt::join(spacing, " "));
 }
 
 }  // namespace
@@ -84,7 +86,7 @@ void write_field_sidecar(const std::filesystem::path& sidecar, const std::filesy
   const std::string file = escaped(data.filename().string());
   std::vector<std::uint64_t> nodes;
   for (const Axis& axis : axes) nodes.push_back(axis.values.size());
-  const std::string shape = joined(nodes);
+  const std::string shape = (axes.size() == 2 ? "1 " : "") + joined(nodes);
   std::string grids;
   for (std::size_t record = 0; record < times.size(); ++record) {
     Slab slab{{record}, {1}, {times.size()}};
@@ -95,8 +97,8 @@ void write_field_sidecar(const std::filesystem::path& sidecar, const std::filesy
     }
     grids += fmt::format(
         "<Grid Name=\"fields\" GridType=\"Uniform\"><Time Value=\"{}\"/>\n"
-        "<Topology TopologyType=\"{}DCoRectMesh\" Dimensions=\"{}\"/>\n{}",
-        times[record], axes.size(), shape, regular_geometry(axes));
+        "<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"{}\"/>\n{}",
+        times[record], shape, regular_geometry(axes));
     for (const Variable& variable : variables)
       grids += attribute(variable, slab_item(slab, shape, encoding,
                                              fmt::format("{}:/{}", file, escaped(variable.name))));

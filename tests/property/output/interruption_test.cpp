@@ -151,7 +151,8 @@ TEST(Killed, at_any_call_of_a_parcel_append_keeps_old_records) {
 }
 
 TEST(Killed, at_any_call_of_a_checkpoint_leaves_a_valid_one) {
-  const parcels::Store old_state = store_of(50, 1), new_state = store_of(60, 2);
+  // Columns of 80 kB go to the file one by one, everything smaller at the end.
+  const parcels::Store old_state = store_of(50, 1), new_state = store_of(10000, 2);
   for (int n = 1;; ++n) {
     const ScratchFolder folder;
     write_checkpoint(folder.path(), old_state, {1, 1, 0.1, {}}, 2);
@@ -281,7 +282,7 @@ TEST(DiskFull, at_any_write_of_an_append_keeps_the_file_as_it_was) {
 }
 
 TEST(DiskFull, at_any_write_of_a_checkpoint_keeps_the_one_before) {
-  const parcels::Store store = store_of(500, 1);
+  const parcels::Store store = store_of(10000, 1);
   for (int n = 1;; ++n) {
     const ScratchFolder folder;
     const auto older = write_checkpoint(folder.path(), store, {1, 1, 0.1, {}}, 2);

@@ -220,5 +220,41 @@ TEST(FieldFile, SomethingElseUnderItsNameIsNamed) {
   }
 }
 
+TEST(FieldFile, SidecarDescribesTheArraysOfTheFile) {
+  const ScratchFolder folder;
+  const mesh::Grid<2> flat({4, 5}, {100, 0}, {8, 20});
+  FieldFile solid = field_file(folder / "3.nc");
+  FieldFile plane(folder / "2.nc", node_axes(flat), two_variables(), sample_provenance(),
+                  {.exact = true}, Start::fresh());
+  for (int n = 0; n < 3; ++n) {
+    solid.append(10 * n, random_record(2, field_size(), 30u + n));
+    plane.append(10 * n, random_record(2, 4 * 6, 40u + n));
+  }
+  const CommandResult result = run_python(folder, R"py(
+import sys, os, h5py, xml.etree.ElementTree as xml
+numbers = lambda text: [float(n) for n in text.split()]
+expected = {"3.xmf": ("6 3 4", [10, -1, 0], [4, 2, 2]), "2.xmf": ("1 6 4", [0, 0, 100], [1, 4, 2])}
+for sidecar in sys.argv[1:]:
+    shape, origin, spacing = expected[os.path.basename(sidecar)]
+    grids = xml.parse(sidecar).getroot().findall("./Domain/Grid/Grid")
+    assert [float(g.find("Time").get("Value")) for g in grids] == [0, 10, 20]
+    for n, grid in enumerate(grids):
+        assert grid.find("Topology").get("Dimensions") == shape
+        assert [numbers(i.text) for i in grid.findall("Geometry/DataItem")] == [origin, spacing]
+        for slab in grid.findall("Attribute/DataItem"):
+            selection, source = slab.findall("DataItem")
+            rank = int(selection.get("Dimensions").split()[1])
+            start, stride, count = (numbers(selection.text)[k * rank:][:rank] for k in range(3))
+            name, path = source.text.split(":")
+            with h5py.File(os.path.join(os.path.dirname(sidecar), name)) as f:
+                assert list(f[path].shape) == numbers(source.get("Dimensions"))
+                assert f[path].dtype.itemsize == int(source.get("Precision"))
+                assert start == [n] + [0] * (f[path].ndim - 1) and set(stride) == {1}
+                assert count == [1] + list(f[path].shape[1:])
+)py",
+                                          {folder / "3.xmf", folder / "2.xmf"});
+  EXPECT_EQ(result.status, 0) << result.text;
+}
+
 }  // namespace
 }  // namespace pileus::output
