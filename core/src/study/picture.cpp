@@ -85,12 +85,71 @@ double aspect_of(const SectionPicture& picture) {
   return (panel.right - panel.left) / (panel.top - panel.bottom);
 }
 
-// Layout in px: what is left for the panels after labels, title and colour bar.
-constexpr int panel_height = 400, left_margin = 80, right_margin = 140, top_margin = 84,
-              bottom_margin = 76, gap = 18;
+/// Where the panels stand, in px from the lower left corner: side by side when they are about as
+/// tall as wide, one above the other when they are wide.
+struct Layout {
+  static constexpr int left_margin = 80, right_margin = 140, top_margin = 84, bottom_margin = 76;
+  static constexpr int gap_across = 18, gap_up = 44;
+  static constexpr double widest = 1180, tallest = 400;  // of the panels together; of one
 
-int panel_width(const SectionPicture& picture) {
-  return std::clamp(static_cast<int>(panel_height * aspect_of(picture)), 120, 1600);
+  explicit Layout(const SectionPicture& picture) : panels(static_cast<int>(picture.panels.size())) {
+    const double aspect = aspect_of(picture);
+    across = aspect > 1.6 ? 1 : panels;
+    up = (panels + across - 1) / across;
+    width = std::min(tallest * aspect, (widest - (across - 1) * gap_across) / across);
+    height = width / aspect;
+  }
+  double left(int panel) const { return left_margin + panel % across * (width + gap_across); }
+  double bottom(int panel) const {
+    return bottom_margin + (up - 1 - panel / across) * (height + gap_up);
+  }
+  double panels_height() const { return up * height + (up - 1) * gap_up; }
+  PictureSize size() const {
+    return {
+        static_cast<int>(left_margin + across * width + (across - 1) * gap_across + right_margin),
+        static_cast<int>(bottom_margin + panels_height() + top_margin)};
+  }
+
+  int panels, across = 1, up = 1;
+  double width = 0, height = 0;  // of one panel
+};
+
+/// Frame, labels and ranges of one panel, and its plot command.
+std::string panel_commands(const SectionPicture& picture, const Layout& layout, int index) {
+  const PictureSize size = layout.size();
+  const double width = size.width, height = size.height;
+  const SectionPanel& panel = picture.panels[static_cast<std::size_t>(index)];
+  const double left = layout.left(index), bottom = layout.bottom(index);
+  std::string script = fmt::format(
+      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n"
+      "set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n",
+      left / width, (left + layout.width) / width, bottom / height,
+      (bottom + layout.height) / height);
+  const bool is_leftmost = index % layout.across == 0;
+  const bool is_lowest = index / layout.across == layout.up - 1;
+  script += is_leftmost ? fmt::format("set ylabel {} noenhanced\nset format y '%g'\n",
+                                      quoted(picture.vertical_label))
+                        : std::string("unset ylabel\nset format y ''\n");
+  script += is_lowest ? fmt::format("set xlabel {} noenhanced\nset format x '%g'\n",
+                                    quoted(picture.horizontal_label))
+                      : std::string("unset xlabel\nset format x ''\n");
+  if (index > 0) script += "unset label 1\n";
+  script += index + 1 < layout.panels  // one colour bar, drawn with the last panel
+                ? std::string("unset colorbox\n")
+                : fmt::format(
+                      "set colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f} "
+                      "noborder\nset cblabel {} noenhanced offset 1,0\n",
+                      1 - (Layout::right_margin - 14) / width, Layout::bottom_margin / height,
+                      14 / width, layout.panels_height() / height, quoted(picture.value_label));
+  script += fmt::format("set title {} noenhanced offset 0,-0.5\n", quoted(panel.title));
+  script += fmt::format("set xrange [{0:.8g}:{1:.8g}]\nset yrange [{2:.8g}:{3:.8g}]\n", panel.left,
+                        panel.right, panel.bottom, panel.top);
+  const double across = (panel.right - panel.left) / static_cast<double>(panel.columns - 1);
+  const double up = (panel.top - panel.bottom) / static_cast<double>(panel.rows - 1);
+  return script +
+         fmt::format(
+             "plot $panel{} matrix using ({:.8g}+$1*{:.8g}):({:.8g}+$2*{:.8g}):3 with image\n",
+             index, panel.left, across, panel.bottom, up);
 }
 
 }  // namespace
@@ -118,9 +177,7 @@ SectionPanel refine(const SectionPanel& panel, std::size_t factor) {
 }
 
 PictureSize size_of(const SectionPicture& picture) {
-  const int panels = static_cast<int>(picture.panels.size());
-  return {left_margin + panels * panel_width(picture) + (panels - 1) * gap + right_margin,
-          top_margin + panel_height + bottom_margin};
+  return Layout(picture).size();
 }
 
 PictureSize size_of(const CurvePicture&) {
@@ -128,48 +185,21 @@ PictureSize size_of(const CurvePicture&) {
 }
 
 std::string gnuplot_script(const SectionPicture& picture) {
-  const PictureSize size = size_of(picture);
+  const Layout layout(picture);
+  const PictureSize size = layout.size();
   const Range range = range_of(picture);
-  const double width = size.width, height = size.height;
   std::string script = "set encoding utf8\nunset key\n";
-  for (std::size_t p = 0; p < picture.panels.size(); ++p)
+  for (std::size_t p = 0; p < picture.panels.size(); ++p) {
     script += data_block(p, picture.panels[p]);
+  }
   script += picture.diverging ? diverging_palette : sequential_palette;
   script += fmt::format("set cbrange [{:.10g}:{:.10g}]\n", range.low, range.high);
   script += "set tics out nomirror\nset border 3 lc rgb '#444444'\nset format cb '%.3g'\n";
-  script += fmt::format("set label 1 {} noenhanced at screen {:.5f},{:.5f} left font ',15'\n",
-                        quoted(picture.title), left_margin / width, 1 - 24 / height);
-  script +=
-      fmt::format("set xlabel {} noenhanced\nset multiplot\n", quoted(picture.horizontal_label));
-  for (std::size_t p = 0; p < picture.panels.size(); ++p) {
-    const SectionPanel& panel = picture.panels[p];
-    const double left = left_margin + static_cast<double>(p) * (panel_width(picture) + gap);
-    script += fmt::format("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n",
-                          left / width, (left + panel_width(picture)) / width);
-    script += fmt::format("set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n",
-                          bottom_margin / height, (bottom_margin + panel_height) / height);
-    if (p == 0) {
-      script += fmt::format("set ylabel {} noenhanced\n", quoted(picture.vertical_label));
-    } else {
-      script += "unset ylabel\nset format y ''\nunset label 1\n";
-    }
-    // One colour bar, beside the last panel.
-    script += p + 1 < picture.panels.size()
-                  ? std::string("unset colorbox\n")
-                  : fmt::format(
-                        "set colorbox user origin screen {:.5f},{:.5f} size screen "
-                        "{:.5f},{:.5f} noborder\nset cblabel {} noenhanced offset 1,0\n",
-                        1 - (right_margin - 14) / width, bottom_margin / height, 14 / width,
-                        panel_height / height, quoted(picture.value_label));
-    script += fmt::format("set title {} noenhanced offset 0,-0.3\n", quoted(panel.title));
-    script += fmt::format("set xrange [{0:.8g}:{1:.8g}]\nset yrange [{2:.8g}:{3:.8g}]\n",
-                          panel.left, panel.right, panel.bottom, panel.top);
-    const double across = (panel.right - panel.left) / static_cast<double>(panel.columns - 1);
-    const double up = (panel.top - panel.bottom) / static_cast<double>(panel.rows - 1);
-    script += fmt::format(
-        "plot $panel{} matrix using ({:.8g}+$1*{:.8g}):({:.8g}+$2*{:.8g}):3 with image\n", p,
-        panel.left, across, panel.bottom, up);
-  }
+  script += fmt::format(
+      "set label 1 {} noenhanced at screen {:.5f},{:.5f} left font ',15'\n", quoted(picture.title),
+      static_cast<double>(Layout::left_margin) / size.width, 1 - 24.0 / size.height);
+  script += "set multiplot\n";
+  for (int p = 0; p < layout.panels; ++p) script += panel_commands(picture, layout, p);
   return script + "unset multiplot\n";
 }
 

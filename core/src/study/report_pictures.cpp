@@ -181,7 +181,8 @@ SectionPicture section_picture(const ResultsFile& file, const std::string& field
   }
   picture.horizontal_label = with_units("x", length.units);
   picture.vertical_label = with_units("z", length.units);
-  picture.value_label = with_units(readable_name(*variable), value.units);
+  // The name stands in the title; beside the scale its unit is enough.
+  picture.value_label = value.units;
   for (const std::size_t record : records) {
     SectionPanel panel = read_panel(file, *variable, axes, record, value.factor);
     panel.title = fmt::format("t = {:.6g} s", times[record]);
