@@ -105,9 +105,9 @@ constexpr std::array<KnownDimension, 17> known_dimensions = {{
 std::optional<WrittenQuantity> split_quantity(std::string_view text) {
   text = trimmed(text);
   std::string_view body = text;
-  if (!body.empty() && body.front() == '+') body.remove_prefix(1);
   std::string_view digits = body;
-  if (!digits.empty() && digits.front() == '-') digits.remove_prefix(1);
+  if (!digits.empty() && (digits.front() == '-' || digits.front() == '+')) digits.remove_prefix(1);
+  if (!body.empty() && body.front() == '+') body = digits;  // from_chars knows no plus sign
   if (digits.empty()) return std::nullopt;
   const bool starts_as_number =
       is_digit(digits[0]) || (digits[0] == '.' && digits.size() > 1 && is_digit(digits[1]));

@@ -1,6 +1,7 @@
 // The declared keys of names and initial state: identity, constants, formulas, fields, initial.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/nearest_word.hpp"
@@ -106,12 +107,21 @@ void check_initial(Reader& reader, const Node& node, void* object) {
                            "give either 'vorticity' or 'velocity': each determines the other", 8,
                            vorticity->where, "'vorticity' is given here"});
   const Entry* wind = node.find("mean_wind");
-  if (velocity != nullptr && wind != nullptr)
+  const bool windy = std::any_of(initial.mean_wind.begin(), initial.mean_wind.end(),
+                                 [](double component) { return component != 0; });
+  if (velocity != nullptr && wind != nullptr && windy)
     reader.problems().add({wind->where,
                            "'mean_wind' goes with 'vorticity'; 'velocity' already contains it", 9,
                            velocity->where, "'velocity' is given here"});
   if (initial.mean_wind.empty())
     initial.mean_wind.assign(static_cast<std::size_t>(reader.scene().domain.dimension - 1), 0.0);
+}
+
+std::vector<std::string> carried_quantities() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities())
+    if (quantity.carried) names.emplace_back(quantity.name);
+  return names;
 }
 
 }  // namespace
@@ -202,6 +212,7 @@ const Table& initial_table() {
               all[name] = resolved_field(field);
             return all;
           },
+      .other_names = carried_quantities(),
       .amend_schema =
           [](Json& schema) {
             for (const Quantity& quantity : quantities()) {

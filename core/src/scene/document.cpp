@@ -204,6 +204,8 @@ std::string explain_syntax(const std::string& message) {
     return "the mapping that begins here is not closed, or a line below it is indented wrongly";
   if (message == "end of sequence not found" || message == "end of sequence flow not found")
     return "the list that begins here is not closed, or a line below it is indented wrongly";
+  if (message == "illegal flow end")
+    return "this bracket does not close the one that was opened last";
   if (message == "the referenced anchor is not defined")
     return "this alias refers to an anchor that is not defined above";
   return message;

@@ -91,7 +91,9 @@ void read_noise(Reader& reader, const Node& node, const std::string& units,
                 FieldDescription& field) {
   static const Table& declared = noise_table();
   Table table = declared;
-  table.keys[0].units = units;  // the amplitude is in the field's unit
+  // The amplitude is a difference in the field's unit.
+  table.keys[0].units = units;
+  table.keys[0].temperature = Temperature::difference;
   Noise noise;
   reader.section(node, table, &noise);
   field.noise = noise;

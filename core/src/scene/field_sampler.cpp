@@ -128,7 +128,8 @@ void FieldSampler::sample_range(std::size_t begin, std::size_t end, const double
       throw Error(
           ExitCode::usage,
           fmt::format("{}: error: the field is {} at x = {} m, y = {} m, z = {} m",
-                      describe(field_.where), value, shortest(x[i]), shortest(yi), shortest(z[i])));
+                      describe(field_.where), std::isnan(value) ? "not a number" : "infinite",
+                      shortest(x[i]), shortest(yi), shortest(z[i])));
     out[i] = value;
   }
 }

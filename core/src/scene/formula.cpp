@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 #include "base/nearest_word.hpp"
 
@@ -97,7 +98,12 @@ FormulaProblem explain(const mu::ParserError& error, const std::string& text,
                                          : fmt::format("known are {}, pi and functions", list)),
             position};
   }
-  std::string message = error.GetMsg();
+  // The place is shown under the formula; muParser's own count of it is left out.
+  static const std::regex place("( found)? at (expression )?position [0-9]+");
+  static const std::regex blank_in_quotes("\"([^\"]*[^\" ]) +\"");
+  std::string message = std::regex_replace(error.GetMsg(), place, "");
+  message = std::regex_replace(message, blank_in_quotes, "\"$1\"");
+  std::replace(message.begin(), message.end(), '"', '\'');
   if (!message.empty() && message.back() == '.') message.pop_back();
   if (!message.empty()) message[0] = static_cast<char>(std::tolower(message[0]));
   return {fmt::format("formula error: {}", message), position};

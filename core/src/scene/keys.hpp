@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/units.hpp"
 #include "scene/document.hpp"
 #include "scene/scene.hpp"
 
@@ -60,6 +61,7 @@ struct Key {
   std::string default_doc;  // shown instead of the value of a default-constructed object
   bool required = false;
   bool input_only = false;  // states something else; not part of the resolved scene
+  Temperature temperature = Temperature::absolute;  // whether degC and degF may state it
   Range range;
   Count count = Count::any;
   std::vector<std::string> choices;
@@ -94,6 +96,7 @@ struct Table {
   /// Checks and completions that need the whole section.
   std::function<void(Reader&, const Node&, void*)> finish;
   std::function<Json(const void*)> write_other;  // entries read by `other`
+  std::vector<std::string> other_names = {};     // that `other` accepts, for "did you mean"
   std::function<void(Json& schema)> amend_schema;
 
   const Key* find(std::string_view name) const;

@@ -18,19 +18,18 @@ class Checker {
   Checker(const OperatorBlock& block, const Constants& constants, Problems& problems)
       : block_(block), constants_(constants), problems_(problems) {}
 
-  void report(const Location& where, const std::string& text, const std::string& value) {
-    problems_.add(where, fmt::format("{} of operator '{}'", text, block_.name),
-                  std::max(1, character_count(value)));
+  void report(const ParameterDeclaration& declared, const Location& where, const std::string& text,
+              const std::string& value) {
+    problems_.add(
+        where, fmt::format("parameter '{}' of operator '{}': {}", declared.name, block_.name, text),
+        std::max(1, character_count(value)));
   }
 
   bool number(const ParameterDeclaration& declared, const std::string& text, const Location& where,
               double& value) {
     const NumberResult result = read_number(text, declared.units, constants_);
     if (!result.ok()) {
-      problems_.add(where,
-                    fmt::format("parameter '{}' of operator '{}': {}", declared.name, block_.name,
-                                result.problem),
-                    std::max(1, character_count(text)));
+      report(declared, where, result.problem, text);
       return false;
     }
     if (!in_range(declared, result.value, text, where)) return false;
@@ -41,9 +40,7 @@ class Checker {
   void integer(const ParameterDeclaration& declared, const RawValue& raw, double& value) {
     const auto whole = raw.is_list ? std::optional<std::int64_t>() : read_integer(raw.text);
     if (!whole)
-      report(raw.where,
-             fmt::format("expected a whole number, found {}, for parameter '{}'", found(raw),
-                         declared.name),
+      report(declared, raw.where, fmt::format("expected a whole number, found {}", found(raw)),
              raw.text);
     else if (in_range(declared, static_cast<double>(*whole), raw.text, raw.where))
       value = static_cast<double>(*whole);
@@ -53,9 +50,7 @@ class Checker {
     if (const auto state = raw.is_list ? std::optional<bool>() : read_switch(raw.text))
       value = *state ? 1 : 0;
     else
-      report(raw.where,
-             fmt::format("expected 'true' or 'false', found {}, for parameter '{}'", found(raw),
-                         declared.name),
+      report(declared, raw.where, fmt::format("expected 'true' or 'false', found {}", found(raw)),
              raw.text);
   }
 
@@ -69,10 +64,9 @@ class Checker {
       return;
     }
     const std::string nearest = raw.is_list ? std::string() : nearest_word(raw.text, choices);
-    report(raw.where,
-           fmt::format(
-               "expected {}, found {}{}, for parameter '{}'", alternatives(choices), found(raw),
-               nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest), declared.name),
+    report(declared, raw.where,
+           fmt::format("expected {}, found {}{}", alternatives(choices), found(raw),
+                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)),
            raw.text);
   }
 
@@ -82,8 +76,7 @@ class Checker {
         raw.is_list ? raw.list : std::vector<std::string>{raw.text};
     std::vector<double> result(items.size(), declared.fallback);
     bool good = !items.empty();
-    if (!good)
-      report(raw.where, fmt::format("the list is empty for parameter '{}'", declared.name), "");
+    if (!good) report(declared, raw.where, "the list is empty", "");
     for (std::size_t i = 0; i < items.size(); ++i)
       good = number(declared, items[i], raw.where, result[i]) && good;
     if (good) values = std::move(result);
@@ -99,10 +92,9 @@ class Checker {
                 const Location& where) {
     if (declared.low == declared.high || (value >= declared.low && value <= declared.high))
       return true;
-    report(where,
-           fmt::format("'{}' = {} must be between {} and {}", declared.name,
-                       with_units(value, declared.units), shortest(declared.low),
-                       with_units(declared.high, declared.units)),
+    report(declared, where,
+           fmt::format("{} must be between {} and {}", with_units(value, declared.units),
+                       shortest(declared.low), with_units(declared.high, declared.units)),
            text);
     return false;
   }
@@ -159,10 +151,8 @@ ParameterValues validate_parameters(const OperatorBlock& block,
     else if (parameter.type == ParameterType::numbers)
       checker.numbers(parameter, raw, values.list[i]);
     else if (raw.is_list)
-      checker.report(raw.where,
-                     fmt::format("expected one value, found {}, for parameter '{}'",
-                                 Checker::found(raw), name),
-                     "");
+      checker.report(parameter, raw.where,
+                     fmt::format("expected one value, found {}", Checker::found(raw)), "");
     else if (parameter.type == ParameterType::text)
       values.text[i] = raw.text;
     else

@@ -14,15 +14,15 @@ enum class ParameterType { number, integer, toggle, choice, text, numbers };
 
 /// One parameter as its plugin declares it.
 struct ParameterDeclaration {
-  std::string name;
+  std::string name = {};
   ParameterType type = ParameterType::number;
   std::string units = "1";  // UDUNITS
-  std::string doc;
-  double fallback = 0;               // number, integer, toggle (0 or 1), the one of numbers
-  double low = 0, high = 0;          // both ends included; equal: unbounded
-  std::vector<std::string> choices;  // choice; the first is the default
-  std::string text_fallback;         // text
-  std::string when;                  // "thermodynamics == real"; empty: always
+  std::string doc = {};
+  double fallback = 0;                    // number, integer, toggle (0 or 1), the one of numbers
+  double low = 0, high = 0;               // both ends included; equal: unbounded
+  std::vector<std::string> choices = {};  // choice; the first is the default
+  std::string text_fallback = {};         // text
+  std::string when = {};                  // "thermodynamics == real"; empty: always
 };
 
 /// The values of all declared parameters, by their position in the declarations.

@@ -77,7 +77,8 @@ void Reader::section(const Node& node, const Table& table, void* object) {
 void Reader::unknown_key(const Entry& entry, const Table& table) {
   const std::string where =
       table.path.empty() ? "at the top level" : fmt::format("in '{}'", table.path);
-  const std::vector<std::string> here = key_names(table);
+  std::vector<std::string> here = key_names(table);
+  here.insert(here.end(), table.other_names.begin(), table.other_names.end());
   std::string text = fmt::format("unknown key '{}' {}", entry.key, where);
   const std::string nearest = nearest_word(entry.key, here);
   std::string elsewhere;
@@ -100,7 +101,7 @@ bool Reader::number(const Node& node, const Key& key, double& value) {
                               dimension.example, describe(node)));
     return false;
   }
-  const NumberResult result = read_number(node.text, key.units, constants());
+  const NumberResult result = read_number(node.text, key.units, constants(), key.temperature);
   if (!result.ok()) {
     Location where = node.where;
     if (where.line > 0 && result.position > 0)
