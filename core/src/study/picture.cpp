@@ -88,7 +88,7 @@ double aspect_of(const SectionPicture& picture) {
 /// Where the panels stand, in px from the lower left corner: side by side when they are about as
 /// tall as wide, one above the other when they are wide.
 struct Layout {
-  static constexpr int left_margin = 80, right_margin = 140, top_margin = 84, bottom_margin = 76;
+  static constexpr int left_margin = 104, right_margin = 172, top_margin = 84, bottom_margin = 76;
   static constexpr int gap_across = 18, gap_up = 44;
   static constexpr double widest = 1180, tallest = 400;  // of the panels together; of one
 
@@ -138,7 +138,7 @@ std::string panel_commands(const SectionPicture& picture, const Layout& layout, 
                 ? std::string("unset colorbox\n")
                 : fmt::format(
                       "set colorbox user origin screen {:.5f},{:.5f} size screen {:.5f},{:.5f} "
-                      "noborder\nset cblabel {} noenhanced offset 1,0\n",
+                      "noborder\nset cblabel {} noenhanced offset 0.5,0\n",
                       1 - (Layout::right_margin - 14) / width, Layout::bottom_margin / height,
                       14 / width, layout.panels_height() / height, quoted(picture.value_label));
   script += fmt::format("set title {} noenhanced offset 0,-0.5\n", quoted(panel.title));
