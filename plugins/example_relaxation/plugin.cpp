@@ -3,8 +3,8 @@
 #include <pileus/plugin.hpp>
 
 class Relaxation : public pileus::Operator<Relaxation> {
-  pileus::Slot tracer;
-  pileus::Param time_scale, target;
+  pileus::Slot tracer_;
+  pileus::Param time_scale_, target_;
 
  public:
   void describe(pileus::Declaration& d) {
@@ -17,14 +17,14 @@ class Relaxation : public pileus::Operator<Relaxation> {
     d.op.licence = "Apache-2.0";
     d.op.form = PILEUS_FLOW;
     d.provides("tracer_relaxation");
-    tracer = d.owns("passive_tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
-    time_scale = d.number("time_scale", "s", 3600).range(1e-3, 1e9).doc("e-folding time");
-    target = d.number("target", "1", 0).range(-1e6, 1e6).doc("value relaxed to");
+    tracer_ = d.owns("passive_tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
+    time_scale_ = d.number("time_scale", "s", 3600).range(1e-3, 1e9).doc("e-folding time");
+    target_ = d.number("target", "1", 0).range(-1e6, 1e6).doc("value relaxed to");
   }
 
   void apply(const pileus_step& step, pileus::Block block) const {
-    const double ratio = step.dt / value(time_scale), goal = value(target);
-    double* q = block.out(tracer);
+    const double ratio = step.dt / value(time_scale_), goal = value(target_);
+    double* q = block.out(tracer_);
     block.each([&](auto p) { q[p] = pileus::numerics::relaxed(q[p], goal, ratio); });
   }
 };

@@ -24,9 +24,9 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   void configured() {
-    latent_buoyancy_ =
-        value(gravity) * value(latent_heat) / (value(heat_capacity) * value(buoyancy_temperature));
-    if (choice(thermodynamics) == 1) build_reference_state();
+    latent_buoyancy_ = value(gravity_) * value(latent_heat_) /
+                       (value(heat_capacity_) * value(buoyancy_temperature_));
+    if (choice(thermodynamics_) == 1) build_reference_state();
   }
 
   void diagnose(const pileus_step&, Block block) const {
@@ -58,79 +58,79 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   void describe_parameters(Declaration& d) {
-    thermodynamics = d.choice("thermodynamics", {"ideal", "real"})
-                         .doc("saturation by height alone, or by temperature and pressure");
-    gravity = d.number("gravity", "m s-2", 9.81).range(1e-3, 1e3).doc("acceleration of gravity");
-    latent_heat = d.number("latent_heat", "J kg-1", 2.5e6).range(1.0, 1e9).doc("of vaporisation");
-    heat_capacity = d.number("heat_capacity", "J kg-1 K-1", 1005.0)
-                        .range(1.0, 1e6)
-                        .doc("of dry air at constant pressure");
-    buoyancy_temperature = d.number("buoyancy_temperature", "K", 300.0)
-                               .range(1.0, 1e4)
-                               .doc("constant temperature that scales the buoyancy, theta_00");
-    base_height = d.number("base_height", "m", 0.0)
-                      .range(-1e6, 1e6)
-                      .doc("height of the surface humidity or surface pressure");
-    surface_humidity = d.number("surface_humidity", "1", 0.015)
-                           .range(0.0, 1.0)
-                           .when(ideal)
-                           .doc("saturation specific humidity at the base height, q_0");
-    scale_height = d.number("scale_height", "m", 1000.0)
-                       .range(1e-3, 1e6)
-                       .when(ideal)
-                       .doc("e-folding height of the saturation humidity, H");
-    surface_pressure = d.number("surface_pressure", "Pa", 1.0e5)
-                           .range(1e3, 2e5)
-                           .when(real)
-                           .doc("reference pressure at the base height");
-    gas_constant = d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04)
-                       .range(1.0, 1e4)
-                       .when(real)
-                       .doc("of dry air");
-    epsilon = d.number("epsilon", "1", 0.622)
-                  .range(0.01, 0.99)
-                  .when(real)
-                  .doc("ratio of the gas constants of dry air and vapour");
-    reference_height = d.numbers("reference_height", "m", 0.0)
-                           .range(-1e6, 1e6)
-                           .when(real)
-                           .doc("heights of the reference profile, ascending");
-    reference_theta_v = d.numbers("reference_potential_temperature", "K", 300.0)
-                            .range(50.0, 2000.0)
+    thermodynamics_ = d.choice("thermodynamics", {"ideal", "real"})
+                          .doc("saturation by height alone, or by temperature and pressure");
+    gravity_ = d.number("gravity", "m s-2", 9.81).range(1e-3, 1e3).doc("acceleration of gravity");
+    latent_heat_ = d.number("latent_heat", "J kg-1", 2.5e6).range(1.0, 1e9).doc("of vaporisation");
+    heat_capacity_ = d.number("heat_capacity", "J kg-1 K-1", 1005.0)
+                         .range(1.0, 1e6)
+                         .doc("of dry air at constant pressure");
+    buoyancy_temperature_ = d.number("buoyancy_temperature", "K", 300.0)
+                                .range(1.0, 1e4)
+                                .doc("constant temperature that scales the buoyancy, theta_00");
+    base_height_ = d.number("base_height", "m", 0.0)
+                       .range(-1e6, 1e6)
+                       .doc("height of the surface humidity or surface pressure");
+    surface_humidity_ = d.number("surface_humidity", "1", 0.015)
+                            .range(0.0, 1.0)
+                            .when(ideal)
+                            .doc("saturation specific humidity at the base height, q_0");
+    scale_height_ = d.number("scale_height", "m", 1000.0)
+                        .range(1e-3, 1e6)
+                        .when(ideal)
+                        .doc("e-folding height of the saturation humidity, H");
+    surface_pressure_ = d.number("surface_pressure", "Pa", 1.0e5)
+                            .range(1e3, 2e5)
                             .when(real)
-                            .doc(
-                                "virtual potential temperature of the hydrostatic reference "
-                                "state at those heights; buoyancy is measured from it");
+                            .doc("reference pressure at the base height");
+    gas_constant_ = d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04)
+                        .range(1.0, 1e4)
+                        .when(real)
+                        .doc("of dry air");
+    epsilon_ = d.number("epsilon", "1", 0.622)
+                   .range(0.01, 0.99)
+                   .when(real)
+                   .doc("ratio of the gas constants of dry air and vapour");
+    reference_height_ = d.numbers("reference_height", "m", 0.0)
+                            .range(-1e6, 1e6)
+                            .when(real)
+                            .doc("heights of the reference profile, ascending");
+    reference_theta_v_ = d.numbers("reference_potential_temperature", "K", 300.0)
+                             .range(50.0, 2000.0)
+                             .when(real)
+                             .doc(
+                                 "virtual potential temperature of the hydrostatic reference "
+                                 "state at those heights; buoyancy is measured from it");
   }
 
   void describe_quantities(Declaration& d) {
-    height = d.reads("height", "m").doc("of the parcel's centre");
-    buoyancy_l = d.reads("liquid_water_buoyancy", "m s-2")
-                     .intensive()
-                     .range(-1e4, 1e4)
-                     .when(ideal)
-                     .doc("buoyancy of the parcel with all its liquid evaporated");
-    theta_l = d.reads("liquid_water_potential_temperature", "K")
-                  .intensive()
-                  .range(50.0, 2000.0)
-                  .when(real)
-                  .doc("potential temperature with all liquid evaporated");
-    total_water = d.reads("total_water_mass_fraction", "1")
-                      .intensive("water")
-                      .range(0.0, 1.0)
-                      .doc("vapour and liquid together");
-    buoyancy = d.derives("buoyancy", "m s-2").range(-1e6, 1e6).doc("total buoyancy");
-    liquid = d.derives("mass_fraction_of_cloud_liquid_water_in_air", "1")
-                 .range(0.0, 1.0)
-                 .doc("liquid water");
-    temperature =
+    height_ = d.reads("height", "m").doc("of the parcel's centre");
+    buoyancy_l_ = d.reads("liquid_water_buoyancy", "m s-2")
+                      .intensive()
+                      .range(-1e4, 1e4)
+                      .when(ideal)
+                      .doc("buoyancy of the parcel with all its liquid evaporated");
+    theta_l_ = d.reads("liquid_water_potential_temperature", "K")
+                   .intensive()
+                   .range(50.0, 2000.0)
+                   .when(real)
+                   .doc("potential temperature with all liquid evaporated");
+    total_water_ = d.reads("total_water_mass_fraction", "1")
+                       .intensive("water")
+                       .range(0.0, 1.0)
+                       .doc("vapour and liquid together");
+    buoyancy_ = d.derives("buoyancy", "m s-2").range(-1e6, 1e6).doc("total buoyancy");
+    liquid_ = d.derives("mass_fraction_of_cloud_liquid_water_in_air", "1")
+                  .range(0.0, 1.0)
+                  .doc("liquid water");
+    temperature_ =
         d.derives("air_temperature", "K").range(coldest, 1e4).when(real).doc("temperature");
   }
 
   void build_reference_state() {
-    constants_ = {value(gravity), value(gas_constant), value(heat_capacity), value(latent_heat),
-                  value(epsilon)};
-    const auto heights = list(reference_height), theta_v = list(reference_theta_v);
+    constants_ = {value(gravity_), value(gas_constant_), value(heat_capacity_), value(latent_heat_),
+                  value(epsilon_)};
+    const auto heights = list(reference_height_), theta_v = list(reference_theta_v_);
     if (heights.size() != theta_v.size()) {
       throw Failure(
           "reference_height and reference_potential_temperature differ in their number of "
@@ -143,26 +143,26 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
                       PILEUS_E_CONFIG);
       }
     }
-    reference_.emplace(heights, theta_v, value(base_height), value(surface_pressure), constants_);
+    reference_.emplace(heights, theta_v, value(base_height_), value(surface_pressure_), constants_);
   }
 
   void diagnose_ideal(Block block) const {
-    const IdealAir air{value(surface_humidity), value(base_height), value(scale_height),
+    const IdealAir air{value(surface_humidity_), value(base_height_), value(scale_height_),
                        latent_buoyancy_};
-    air.diagnose(block.count(), block.in(height), block.in(buoyancy_l), block.in(total_water),
-                 block.out(buoyancy), block.out(liquid));
+    air.diagnose(block.count(), block.in(height_), block.in(buoyancy_l_), block.in(total_water_),
+                 block.out(buoyancy_), block.out(liquid_));
   }
 
   void diagnose_real(Block block) const {
-    const double* z = block.in(height);
-    const double* theta = block.in(theta_l);
-    const double* total = block.in(total_water);
-    double* b = block.out(buoyancy);
-    double* wet = block.out(liquid);
-    double* t = block.out(temperature);
+    const double* z = block.in(height_);
+    const double* theta = block.in(theta_l_);
+    const double* total = block.in(total_water_);
+    double* b = block.out(buoyancy_);
+    double* wet = block.out(liquid_);
+    double* t = block.out(temperature_);
     const double kappa = constants_.kappa();
     const double latent_over_heat = constants_.latent_heat / constants_.heat_capacity;
-    const double scale = constants_.gravity / value(buoyancy_temperature);
+    const double scale = constants_.gravity / value(buoyancy_temperature_);
     block.each([&](auto p) {
       const ReferenceState::Point at = reference_->at(z[p]);
       const double temperature_l = at.exner * theta[p];
@@ -187,13 +187,14 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
                   "temperature %.6g K at height %.6g m is below %g K; the reference state does "
                   "not reach this high or the parcel's state is broken",
                   temperature_l, z, coldest);
-    throw Failure(text, PILEUS_E_INPUT).at(uid, theta_l.index, temperature_l);
+    throw Failure(text, PILEUS_E_INPUT).at(uid, theta_l_.index, temperature_l);
   }
 
-  Slot height, buoyancy_l, theta_l, total_water, buoyancy, liquid, temperature;
-  Param thermodynamics, gravity, latent_heat, heat_capacity, buoyancy_temperature, base_height;
-  Param surface_humidity, scale_height;
-  Param surface_pressure, gas_constant, epsilon, reference_height, reference_theta_v;
+  Slot height_, buoyancy_l_, theta_l_, total_water_, buoyancy_, liquid_, temperature_;
+  Param thermodynamics_, gravity_, latent_heat_, heat_capacity_, buoyancy_temperature_,
+      base_height_;
+  Param surface_humidity_, scale_height_;
+  Param surface_pressure_, gas_constant_, epsilon_, reference_height_, reference_theta_v_;
   double latent_buoyancy_ = 0;  // G, m s-2
   thermo::Constants constants_;
   std::optional<ReferenceState> reference_;

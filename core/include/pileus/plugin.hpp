@@ -16,10 +16,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <deque>
 #include <exception>
-#include <initializer_list>
-#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -27,6 +24,7 @@
 #include <vector>
 
 #include "abi.h"
+#include "declaration.hpp"
 #include "philox.hpp"
 
 namespace pileus {
@@ -55,200 +53,6 @@ struct Retry : Failure {
   explicit Retry(const char* why, double smaller_dt = 0) : Failure(why, PILEUS_RETRY) {
     record.dt_hint = smaller_dt;
   }
-};
-
-/// A declared quantity: its position in the operator's list.
-struct Slot {
-  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-};
-/// A declared parameter.
-struct Param {
-  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-};
-/// A declared budget.
-struct Budget {
-  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-};
-
-/// Collects the declarations of one operator. `describe` runs once for the library's tables and
-/// once for every instance, so that its Slot and Param members learn their index. Strings must be
-/// literals: the tables keep the pointers.
-class Declaration {
- public:
-  pileus_operator op{};  // id, kind, version, title, summary, authors, licence, scope, form, …
-
-  class Quantity {
-   public:
-    Quantity(pileus_quantity& row, std::uint32_t index) : row_(row), index_(index) {}
-    /// Admissible values, both ends included; the core checks them after every call.
-    Quantity& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
-    /// Conserved per unit volume: volume-weighted mean at a merge, copied at a split.
-    Quantity& intensive(const char* budget = nullptr) {
-      row_.nature = PILEUS_INTENSIVE, row_.weight = "parcel_volume", row_.budget = budget;
-      return *this;
-    }
-    /// An amount: summed at a merge, shared by volume at a split.
-    Quantity& extensive(const char* budget = nullptr) {
-      return row_.nature = PILEUS_EXTENSIVE, row_.budget = budget, *this;
-    }
-    Quantity& initial(double value) { return row_.initial = value, *this; }
-    Quantity& components(std::uint32_t count) { return row_.components = count, *this; }
-    Quantity& place(std::uint32_t where) { return row_.place = where, *this; }
-    Quantity& type(std::uint32_t element) { return row_.type = element, *this; }
-    Quantity& when(const char* condition) { return row_.when = condition, *this; }
-    Quantity& doc(const char* text) { return row_.doc = text, *this; }
-    operator Slot() const { return {index_}; }  // NOLINT: `slot = d.reads(…)` is the point
-
-   private:
-    pileus_quantity& row_;
-    std::uint32_t index_;
-  };
-
-  class Parameter {
-   public:
-    Parameter(pileus_parameter& row, std::uint32_t index) : row_(row), index_(index) {}
-    /// Admissible values, both ends included.
-    Parameter& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
-    /// Trades accuracy for time; `ladder` from coarse to fine, NaN-terminated, static.
-    Parameter& knob(const double* ladder) { return row_.knob = 1, row_.ladder = ladder, *this; }
-    Parameter& when(const char* condition) { return row_.when = condition, *this; }
-    Parameter& doc(const char* text) { return row_.doc = text, *this; }
-    operator Param() const { return {index_}; }  // NOLINT: `param = d.number(…)` is the point
-
-   private:
-    pileus_parameter& row_;
-    std::uint32_t index_;
-  };
-
-  /// A quantity of the parcels that the operator only reads.
-  Quantity reads(const char* name, const char* units) { return touches(name, units, PILEUS_READ); }
-  /// One it reads and gives new values.
-  Quantity updates(const char* name, const char* units) {
-    return touches(name, units, PILEUS_READ | PILEUS_WRITE);
-  }
-  /// One it owns and advances; state its nature with intensive() or extensive().
-  Quantity owns(const char* name, const char* units) {
-    return touches(name, units, PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE);
-  }
-  /// One that `diagnose` computes from the others.
-  Quantity derives(const char* name, const char* units) {
-    return touches(name, units, PILEUS_WRITE | PILEUS_CREATE, PILEUS_DERIVED);
-  }
-
-  Parameter number(const char* name, const char* units, double fallback) {
-    return parameter(PILEUS_NUMBER, name, units, fallback);
-  }
-  Parameter integer(const char* name, std::int64_t fallback) {
-    return parameter(PILEUS_INTEGER, name, "1", static_cast<double>(fallback));
-  }
-  Parameter toggle(const char* name, bool fallback) {
-    return parameter(PILEUS_SWITCH, name, "1", fallback ? 1.0 : 0.0);
-  }
-  /// One of a few words; the first is the default.
-  Parameter choice(const char* name, std::initializer_list<const char*> words) {
-    std::vector<const char*>& list = choices_.emplace_back(words);
-    list.push_back(nullptr);
-    Parameter made = parameter(PILEUS_CHOICE, name, "1", 0);
-    parameters_.items.back().choices = list.data();
-    return made;
-  }
-  Parameter text(const char* name, const char* fallback) {
-    Parameter made = parameter(PILEUS_TEXT, name, "1", 0);
-    parameters_.items.back().text_fallback = fallback;
-    return made;
-  }
-  /// A list of numbers of one unit; the default is a list of one.
-  Parameter numbers(const char* name, const char* units, double fallback) {
-    return parameter(PILEUS_NUMBERS, name, units, fallback);
-  }
-
-  void provides(const char* effect, const char* when = nullptr) {
-    add_effect(PILEUS_PROVIDES, effect, when);
-  }
-  void requires_effect(const char* effect, const char* when = nullptr) {
-    add_effect(PILEUS_REQUIRES, effect, when);
-  }
-  void excludes(const char* effect, const char* when = nullptr) {
-    add_effect(PILEUS_EXCLUDES, effect, when);
-  }
-  /// A parcel is active if for some `clause` all its comparisons hold.
-  void active_if(std::uint32_t clause, const char* quantity, std::uint32_t comparison,
-                 double value) {
-    pileus_condition& row = conditions_.add();
-    row.clause = clause, row.quantity = quantity, row.op = comparison, row.value = value;
-  }
-  void cites(const char* doi, const char* text) {
-    pileus_reference& row = references_.add();
-    row.doi = doi, row.text = text;
-  }
-  Budget budget(const char* name) {
-    budgets_.back() = name;
-    budgets_.push_back(nullptr);
-    return {static_cast<std::uint32_t>(budgets_.size() - 2)};
-  }
-
-  /// Points the operator's lists at what was collected.
-  void seal() {
-    op.size = sizeof op;
-    op.quantities = quantities_.view.data();
-    op.parameters = parameters_.view.data();
-    op.effects = effects_.view.data();
-    op.active_if = conditions_.view.data();
-    op.references = references_.view.data();
-    op.budgets = budgets_.data();
-  }
-
- private:
-  template <class T>
-  struct List {  // rows that stay where they are, and the zero-terminated view of them
-    std::deque<T> items;
-    std::vector<const T*> view{nullptr};
-    T& add() {
-      T& row = items.emplace_back();
-      row = T{};
-      row.size = sizeof(T);
-      view.back() = &row;
-      view.push_back(nullptr);
-      return row;
-    }
-  };
-
-  Quantity touches(const char* name, const char* units, std::uint32_t access,
-                   std::uint32_t nature = 0) {
-    const auto index = static_cast<std::uint32_t>(quantities_.items.size());
-    pileus_quantity& row = quantities_.add();
-    row.place = PILEUS_PARCEL;
-    row.type = PILEUS_F64;
-    row.components = 1;
-    row.access = access;
-    row.nature = nature;
-    row.name = name;
-    row.units = units;
-    row.low = -std::numeric_limits<double>::max();
-    row.high = std::numeric_limits<double>::max();
-    return {row, index};
-  }
-  Parameter parameter(std::uint32_t type, const char* name, const char* units, double fallback) {
-    const auto index = static_cast<std::uint32_t>(parameters_.items.size());
-    pileus_parameter& row = parameters_.add();
-    row.type = type;
-    row.name = name;
-    row.units = units;
-    row.fallback = fallback;
-    return {row, index};
-  }
-  void add_effect(std::uint32_t role, const char* name, const char* when) {
-    pileus_effect& row = effects_.add();
-    row.role = role, row.name = name, row.when = when;
-  }
-
-  List<pileus_quantity> quantities_;
-  List<pileus_parameter> parameters_;
-  List<pileus_effect> effects_;
-  List<pileus_condition> conditions_;
-  List<pileus_reference> references_;
-  std::deque<std::vector<const char*>> choices_;
-  std::vector<const char*> budgets_{nullptr};
 };
 
 /// Access to a quantity of any stride and number of components.
