@@ -63,7 +63,7 @@ template <int D>
 void Transport<D>::reserve(std::size_t parcels) {
   if (position_increment_[0].size() >= parcels + read_ahead) return;
   // Room for growth, so that the parcel count may vary for many steps without an allocation.
-  const std::size_t room = parcels + parcels / 16 + read_ahead;
+  const std::size_t room = parcels + parcels / 32 + read_ahead;
   for (auto& a : position_increment_) a.discard_and_resize(room);
   for (auto& a : vorticity_increment_) a.discard_and_resize(room);
   const std::size_t used = shape_ == ShapeIntegrator::exponential

@@ -66,6 +66,10 @@ struct Stencil {
   alignas(64) double weight[support_points<D>][2 * corner_columns<D>][lanes];
   /// Base cell of every point, for the test whether a tile may write there.
   alignas(64) std::int32_t cell[support_points<D>][D - 1][lanes];
+  /// Bit per lane whose points all lie in one cell, and the sums of the points' weights, valid for
+  /// those lanes: the nodes of point 0 with these weights stand for all points.
+  unsigned together;
+  alignas(64) double weight_sum[2 * corner_columns<D>][lanes];
 };
 
 static inline void put(std::int32_t* to, IntPack value) {
@@ -122,6 +126,38 @@ static inline void place_point(const KernelGrid<2>& grid, Pack x, Pack z, double
 template <int D>
 inline constexpr int offset_components = D == 3 ? 6 : 2;
 
+/// Most parcels are compact and have all points in one cell, at a quarter of the node accesses.
+template <int D>
+static inline void gather_points(Stencil<D>& stencil) {
+  IntPack apart{};
+  const IntPack first = *reinterpret_cast<const IntPack*>(stencil.node[0][0]);
+  for (int s = 1; s < support_points<D>; ++s)
+    apart |= first != *reinterpret_cast<const IntPack*>(stencil.node[s][0]);
+  stencil.together = 0;
+  for (int lane = 0; lane < lanes; ++lane) stencil.together |= unsigned(apart[lane] == 0) << lane;
+  for (int c = 0; c < 2 * corner_columns<D>; ++c) {
+    Pack sum = *reinterpret_cast<const Pack*>(stencil.weight[0][c]);
+    for (int s = 1; s < support_points<D>; ++s)
+      sum += *reinterpret_cast<const Pack*>(stencil.weight[s][c]);
+    put(stencil.weight_sum[c], sum);
+  }
+}
+
+/// Calls visit(node, weight below, weight above) for every corner column of a lane's points.
+template <int D, class Visit>
+static inline void for_each_column(const Stencil<D>& stencil, int lane, Visit&& visit) {
+  if (stencil.together >> lane & 1u) {
+    for (int c = 0; c < corner_columns<D>; ++c)
+      visit(stencil.node[0][c][lane], stencil.weight_sum[2 * c][lane],
+            stencil.weight_sum[2 * c + 1][lane]);
+    return;
+  }
+  for (int s = 0; s < support_points<D>; ++s)
+    for (int c = 0; c < corner_columns<D>; ++c)
+      visit(stencil.node[s][c][lane], stencil.weight[s][2 * c][lane],
+            stencil.weight[s][2 * c + 1][lane]);
+}
+
 static inline void place_points(const KernelGrid<3>& grid, const double* const* position,
                                 const double* const* offset, std::size_t p, Stencil<3>& stencil) {
   const Pack x = load(position[0] + p), y = load(position[1] + p), z = load(position[2] + p);
@@ -131,6 +167,7 @@ static inline void place_points(const KernelGrid<3>& grid, const double* const* 
   place_point(grid, x + qx, y + qy, z + qz, 0.25, 1, stencil);
   place_point(grid, x - px, y - py, z - pz, 0.25, 2, stencil);
   place_point(grid, x - qx, y - qy, z - qz, 0.25, 3, stencil);
+  gather_points(stencil);
 }
 static inline void place_points(const KernelGrid<2>& grid, const double* const* position,
                                 const double* const* offset, std::size_t p, Stencil<2>& stencil) {
@@ -138,6 +175,7 @@ static inline void place_points(const KernelGrid<2>& grid, const double* const* 
   const Pack px = load(offset[0] + p), pz = load(offset[1] + p);
   place_point(grid, x + px, z + pz, 0.5, 0, stencil);
   place_point(grid, x - px, z - pz, 0.5, 1, stencil);
+  gather_points(stencil);
 }
 
 /// Transposes an 8×8 block held in eight packs.

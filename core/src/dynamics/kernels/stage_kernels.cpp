@@ -21,17 +21,14 @@ void interpolate(const double* flow, const Stencil<3>& stencil, std::size_t coun
     }
     // Two chains per half of the record: the sums are latency-bound otherwise.
     Pack low_a{}, low_b{}, high_a{}, high_b{};
-    for (int s = 0; s < support_points<3>; ++s)
-      for (int c = 0; c < corner_columns<3>; ++c) {
-        const Pack* node =
-            reinterpret_cast<const Pack*>(flow) + 2 * std::size_t(stencil.node[s][c][lane]);
-        const double below = stencil.weight[s][2 * c][lane];
-        const double above = stencil.weight[s][2 * c + 1][lane];
-        low_a += below * node[0];
-        high_a += below * node[1];
-        low_b += above * node[2];
-        high_b += above * node[3];
-      }
+    for_each_column(stencil, static_cast<int>(lane),
+                    [&](std::int32_t at, double below, double above) {
+                      const Pack* node = reinterpret_cast<const Pack*>(flow) + 2 * std::size_t(at);
+                      low_a += below * node[0];
+                      high_a += below * node[1];
+                      low_b += above * node[2];
+                      high_b += above * node[3];
+                    });
     low[lane] = low_a + low_b;
     high[lane] = high_a + high_b;
   }
@@ -47,13 +44,12 @@ void interpolate(const double* flow, const Stencil<2>& stencil, std::size_t coun
       continue;
     }
     Pack a{}, b{};
-    for (int s = 0; s < support_points<2>; ++s)
-      for (int c = 0; c < corner_columns<2>; ++c) {
-        const Pack* node =
-            reinterpret_cast<const Pack*>(flow) + std::size_t(stencil.node[s][c][lane]);
-        a += stencil.weight[s][2 * c][lane] * node[0];
-        b += stencil.weight[s][2 * c + 1][lane] * node[1];
-      }
+    for_each_column(stencil, static_cast<int>(lane),
+                    [&](std::int32_t at, double below, double above) {
+                      const Pack* node = reinterpret_cast<const Pack*>(flow) + std::size_t(at);
+                      a += below * node[0];
+                      b += above * node[1];
+                    });
     value[lane] = a + b;
   }
   transpose(value);

@@ -100,12 +100,11 @@ void deposit_3d(DepositJob<3>& job) {
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
       const Pack value = record[lane];
-      for (int s = 0; s < support_points<3>; ++s)
-        for (int c = 0; c < corner_columns<3>; ++c) {
-          Pack* node = reinterpret_cast<Pack*>(job.field) + stencil.node[s][c][lane];
-          node[0] += stencil.weight[s][2 * c][lane] * value;
-          node[1] += stencil.weight[s][2 * c + 1][lane] * value;
-        }
+      for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
+        Pack* node = reinterpret_cast<Pack*>(job.field) + at;
+        node[0] += below * value;
+        node[1] += above * value;
+      });
     }
   }
 }
@@ -123,12 +122,11 @@ void deposit_2d(DepositJob<2>& job) {
       Record2 value{volume, 0, 0, 0};
       for (int f = 0; f < 3; ++f)
         if (f < job.value_count) value[f + 1] = volume * job.value[f][p + lane];
-      for (int s = 0; s < support_points<2>; ++s)
-        for (int c = 0; c < corner_columns<2>; ++c) {
-          Record2* node = reinterpret_cast<Record2*>(job.field) + stencil.node[s][c][lane];
-          node[0] += stencil.weight[s][2 * c][lane] * value;
-          node[1] += stencil.weight[s][2 * c + 1][lane] * value;
-        }
+      for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
+        Record2* node = reinterpret_cast<Record2*>(job.field) + at;
+        node[0] += below * value;
+        node[1] += above * value;
+      });
     }
   }
 }
@@ -142,12 +140,11 @@ void deposit_volume(DepositJob<D>& job) {
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
       const double volume = job.volume[p + lane];
-      for (int s = 0; s < support_points<D>; ++s)
-        for (int c = 0; c < corner_columns<D>; ++c) {
-          double* node = job.field + stencil.node[s][c][lane];
-          node[0] += stencil.weight[s][2 * c][lane] * volume;
-          node[1] += stencil.weight[s][2 * c + 1][lane] * volume;
-        }
+      for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
+        double* node = job.field + at;
+        node[0] += below * volume;
+        node[1] += above * volume;
+      });
     }
   }
 }
