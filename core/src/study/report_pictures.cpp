@@ -54,11 +54,11 @@ bool is_field(const StoredVariable& variable) {
          d == std::vector<std::string>{"time", "z", "x"};
 }
 
-/// 0 for what a cloud picture shows first.
+/// 0 for what a picture of a cloud shows first; "liquid water buoyancy" is no condensate.
 int rank_of(const std::string& name) {
-  if (name.find("liquid") != std::string::npos || name.find("cloud") != std::string::npos) return 0;
-  if (name.find("buoyancy") != std::string::npos) return 1;
-  return 2;
+  const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+  if (has("buoyancy")) return 1;
+  return has("liquid") || has("cloud") ? 0 : 2;
 }
 
 /// Both signs matter when the smaller extreme is more than noise.
