@@ -26,11 +26,9 @@ void check_parcels_per_cell(Reader& reader, const Node& node, void* object) {
                              power(std::max(1, below)), power(below + 1)));
 }
 
-void complete_domain(Reader& reader, const Node& node, void* object) {
+void complete_domain(Reader&, const Node&, void* object) {
   auto& domain = *static_cast<Domain*>(object);
   if (domain.lower.empty()) domain.lower.assign(static_cast<std::size_t>(domain.dimension), 0.0);
-  (void)reader;
-  (void)node;
 }
 
 /// What `coriolis`, `latitude` and the N² shortcut come to.

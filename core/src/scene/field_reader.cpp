@@ -62,8 +62,7 @@ void read_profile(Reader& reader, const Node& node, const std::string& units,
                                                          with_units(profile.height[i - 1], "m")));
 }
 
-void read_file(Reader& reader, const Node& node, const std::string& units, const std::string& bare,
-               FieldDescription& field) {
+void read_file(Reader& reader, const Node& node, const std::string& bare, FieldDescription& field) {
   field.form = FieldDescription::Form::file;
   const Entry* file = node.find("file");
   const Entry* variable = node.find("variable");
@@ -84,7 +83,6 @@ void read_file(Reader& reader, const Node& node, const std::string& units, const
   if (!std::filesystem::exists(full))
     reader.problem(file->value,
                    fmt::format("there is no file '{}' (looked for '{}')", path, field.path));
-  (void)units;
 }
 
 void read_noise(Reader& reader, const Node& node, const std::string& units,
@@ -209,7 +207,7 @@ void Reader::field_mapping(const Node& node, const std::string& name, FieldDescr
   } else if (forms[0]->key == "height") {
     read_profile(*this, node, field.units, bare, field);
   } else if (forms[0]->key == "file") {
-    read_file(*this, node, field.units, bare, field);
+    read_file(*this, node, bare, field);
   } else if (forms[0]->key == "formula") {
     field.form = FieldDescription::Form::formula;
     if (text(forms[0]->value, "formula", field.formula))

@@ -220,27 +220,8 @@ void Reader::list(const Node& node, const Key& key, std::vector<T>& values, Read
   values = std::move(result);
 }
 
-void Reader::entry(const Entry& entry, const Key& key, const Table& table, void* object) {
-  const Node& node = entry.value;
-  if (key.type == KeyType::custom) return key.read(*this, entry, object);
-  if (node.kind == Node::Kind::null && key.type != KeyType::section) {
-    problems_.add(
-        entry.where,
-        fmt::format("{} has no value; leave the key out for the default", label(table, key.name)),
-        static_cast<int>(key.name.size()));
-    return;
-  }
-  void* member = key.member ? key.member(object) : object;
+void Reader::scalar(const Node& node, const Key& key, void* member, void* object) {
   std::int64_t whole = 0;
-  const auto read_text = [&](const Node& item, std::string& one) { text(item, key.name, one); };
-  const auto read_number_item = [&](const Node& item, double& one) { number(item, key, one); };
-  const auto read_integer_item = [&](const Node& item, int& one) {
-    std::int64_t parsed = 0;
-    if (integer(item, key, parsed)) one = static_cast<int>(parsed);
-  };
-  const auto read_field = [&](const Node& item, FieldDescription& one) {
-    field(item, key.name, key.units, one);
-  };
   double parsed = 0;
   switch (key.type) {
     case KeyType::number:
@@ -266,17 +247,39 @@ void Reader::entry(const Entry& entry, const Key& key, const Table& table, void*
     case KeyType::text:
       text(node, key.name, *static_cast<std::string*>(member));
       break;
-    case KeyType::choice:
+    default:  // choice
       if (const int index = choice(node, key); index >= 0) key.choose(object, index);
-      break;
+  }
+}
+
+void Reader::entry(const Entry& entry, const Key& key, const Table& table, void* object) {
+  const Node& node = entry.value;
+  if (key.type == KeyType::custom) return key.read(*this, entry, object);
+  if (node.kind == Node::Kind::null && key.type != KeyType::section) {
+    problems_.add(
+        entry.where,
+        fmt::format("{} has no value; leave the key out for the default", label(table, key.name)),
+        static_cast<int>(key.name.size()));
+    return;
+  }
+  void* member = key.member ? key.member(object) : object;
+  const auto read_field = [&](const Node& item, FieldDescription& one) {
+    field(item, key.name, key.units, one);
+  };
+  switch (key.type) {
     case KeyType::numbers:
-      list(node, key, *static_cast<std::vector<double>*>(member), read_number_item);
+      list(node, key, *static_cast<std::vector<double>*>(member),
+           [&](const Node& item, double& one) { number(item, key, one); });
       break;
     case KeyType::integers:
-      list(node, key, *static_cast<std::vector<int>*>(member), read_integer_item);
+      list(node, key, *static_cast<std::vector<int>*>(member), [&](const Node& item, int& one) {
+        std::int64_t parsed = 0;
+        if (integer(item, key, parsed)) one = static_cast<int>(parsed);
+      });
       break;
     case KeyType::texts:
-      list(node, key, *static_cast<std::vector<std::string>*>(member), read_text);
+      list(node, key, *static_cast<std::vector<std::string>*>(member),
+           [&](const Node& item, std::string& one) { text(item, key.name, one); });
       break;
     case KeyType::field:
       read_field(node, *static_cast<FieldDescription*>(member));
@@ -294,7 +297,7 @@ void Reader::entry(const Entry& entry, const Key& key, const Table& table, void*
       for (const Node& item : node.items) section(item, *key.table, key.append(member));
       break;
     default:
-      break;
+      scalar(node, key, member, object);
   }
 }
 

@@ -41,6 +41,8 @@ class Reader {
 
  private:
   void entry(const Entry& entry, const Key& key, const Table& table, void* object);
+  /// Keys with one value; `member` is the value's place, `object` that of its section.
+  void scalar(const Node& node, const Key& key, void* member, void* object);
   void unknown_key(const Entry& entry, const Table& table);
   template <class T, class ReadOne>
   void list(const Node& node, const Key& key, std::vector<T>& values, ReadOne&& read_one);
@@ -50,7 +52,6 @@ class Reader {
 
   Scene& scene_;
   Problems& problems_;
-  std::string path_;  // of the section being read, for messages
 };
 
 }  // namespace pileus::scene
