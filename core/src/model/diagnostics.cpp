@@ -57,20 +57,15 @@ int Diagnostics::index(const std::string& name) const {
 }
 
 Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation)
-    : cloud_threshold_(scene.diagnostics.cloud_threshold) {
+    : potential_energy_(scene), cloud_threshold_(scene.diagnostics.cloud_threshold) {
   const parcels::Store& store = simulation.store();
   const bool three = simulation.dimension() == 3;
   kinetic_ = add("kinetic_energy", "m2 s-2", "mean kinetic energy per mass, of the parcels");
   grid_kinetic_ = add("grid_kinetic_energy", "m2 s-2", "mean kinetic energy per mass, of the mesh");
   potential_ = add("potential_energy", "m2 s-2", "mean of -b (z - z_bottom)");
-  if (scene.energy.form != scene::EnergyControl::Form::none) {
-    potential_energy_ = std::make_unique<PotentialEnergy>(scene);
-    available_ = add("available_potential_energy", "m2 s-2", "mean available potential energy");
-  }
-  total_ = add(
-      "total_energy", "m2 s-2",
-      potential_energy_ ? "kinetic and available potential energy" : "kinetic and potential energy",
-      true);
+  available_ = add("available_potential_energy", "m2 s-2", "mean available potential energy");
+  total_ = add("total_energy", "m2 s-2", "kinetic and available potential energy", true);
+  mechanical_ = add("mechanical_energy", "m2 s-2", "kinetic and potential energy", true);
   enstrophy_ = add("enstrophy", "s-2", "mean of half the squared vorticity");
   volume_ = add("volume", three ? "m3" : "m2", "sum of the parcels' volumes", true);
   mean_buoyancy_ = add("mean_buoyancy", "m s-2", "mean buoyancy", true);
@@ -134,7 +129,7 @@ void Diagnostics::observe_state(Simulation& simulation) {
   set(parcels_, static_cast<double>(simulation.store().size()));
   for (std::size_t d = 0; d < mean_wind_.size(); ++d)
     set(mean_wind_[d], simulation.mean_wind().velocity[d]);
-  if (potential_energy_) set(available_, potential_energy_->available(simulation));
+  set(available_, potential_energy_.available(simulation));
   for (std::size_t i = 0; i < exact_.size(); ++i) {
     const std::vector<double> found = exact_[i].compare(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(exact_entries_[i][k], found[k]);
@@ -276,9 +271,8 @@ void Diagnostics::observe_velocity(Simulation& simulation) {
   set(max_speed_, std::sqrt(sums.speed2));
   set(max_vertical_velocity_, sums.up);
   set(min_vertical_velocity_, sums.down);
-  const double potential =
-      values_[static_cast<std::size_t>(available_ >= 0 ? available_ : potential_)];
-  set(total_, values_[static_cast<std::size_t>(kinetic_)] + potential);
+  set(total_,
+      values_[static_cast<std::size_t>(kinetic_)] + values_[static_cast<std::size_t>(available_)]);
 }
 
 }  // namespace pileus::model

@@ -49,7 +49,7 @@ class Diagnostics {
 
   std::vector<DiagnosticInfo> list_;
   std::vector<double> values_;
-  std::unique_ptr<PotentialEnergy> potential_energy_;
+  PotentialEnergy potential_energy_;
   std::vector<ExactComparison> exact_;
   std::vector<std::vector<int>> exact_entries_;
   std::vector<Histogram> histograms_;
@@ -57,10 +57,9 @@ class Diagnostics {
   std::vector<ScalarEntries> scalars_;
   double cloud_threshold_;
   int liquid_scalar_ = -1, water_scalar_ = -1;
-  int kinetic_, grid_kinetic_, potential_,
-      available_ = -1, total_, enstrophy_, volume_, mean_buoyancy_, min_buoyancy_, max_buoyancy_,
-      max_speed_, max_vertical_velocity_, min_vertical_velocity_, max_vorticity_, volume_error_rms_,
-      volume_error_max_, parcels_;
+  int kinetic_, grid_kinetic_, potential_, available_, total_, mechanical_, enstrophy_, volume_,
+      mean_buoyancy_, min_buoyancy_, max_buoyancy_, max_speed_, max_vertical_velocity_,
+      min_vertical_velocity_, max_vorticity_, volume_error_rms_, volume_error_max_, parcels_;
   std::vector<int> mean_wind_, mean_vorticity_;
   int total_water_ = -1, mean_liquid_ = -1, max_liquid_ = -1, cloud_fraction_ = -1,
       cloud_mean_liquid_ = -1;

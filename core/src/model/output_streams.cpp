@@ -128,9 +128,10 @@ OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simula
       std::make_unique<output::SeriesFile>(directory / "series.nc", numbers, provenance, start);
 }
 
+/// Profiles and the series are frequent: they take the first step at or after their time, so that
+/// they do not shorten the steps.
 double OutputStreams::next_landing_after(double time) const {
-  return std::min({fields_schedule_.next_after(time), parcels_schedule_.next_after(time),
-                   profiles_schedule_.next_after(time)});
+  return std::min(fields_schedule_.next_after(time), parcels_schedule_.next_after(time));
 }
 
 void OutputStreams::write_due(Simulation& simulation, bool last) {

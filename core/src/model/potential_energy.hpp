@@ -14,8 +14,8 @@ class PotentialEnergy {
   explicit PotentialEnergy(const scene::Scene& scene);
 
   /// Domain mean of the available potential energy of the evaluated state (m² s⁻²):
-  /// linear: (b − N² z)²/(2 N²); formula: the scene's function of b and z; sorted: potential energy
-  /// less that of the same parcels stacked by buoyancy.
+  /// linear: (b − N² z)²/(2 N²); formula: the scene's function of b and z; otherwise potential
+  /// energy less that of the same parcels stacked by buoyancy.
   double available(const Simulation& simulation);
 
  private:
@@ -23,8 +23,8 @@ class PotentialEnergy {
   double above_sorted(const Simulation& simulation);
 
   scene::EnergyControl control_;
-  std::vector<scene::Formula> formula_;  // one per thread: evaluating changes a formula
-  std::vector<std::size_t> order_;
+  std::vector<scene::Formula> formula_;              // one per thread: evaluating changes a formula
+  std::vector<double> layer_volume_, layer_height_;  // of the sorted state
 };
 
 }  // namespace pileus::model
