@@ -42,9 +42,6 @@ class FlowSolver {
   std::unique_ptr<Stages> stages_;
 };
 
-extern template class FlowSolver<2>;
-extern template class FlowSolver<3>;
-
 /// Filtered, solenoidal vorticity of the flow records: 3 (2D: 1) values per node, all levels.
 template <int D>
 void grid_vorticity(const Grid<D>& grid, const double* flow, double* vorticity);
