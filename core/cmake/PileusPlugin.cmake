@@ -34,8 +34,8 @@ function(pileus_add_plugin name)
   endif()
   # Same bits on every machine and with every vector width: no contraction into fused operations.
   # Exception flags and errno are nobody's business; without them comparisons become vector code.
-  target_compile_options(${name} PRIVATE -ffp-contract=off -fno-trapping-math -fno-math-errno
-                                         $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+  target_compile_options(${name} PRIVATE -ffp-contract=off -fno-trapping-math -fno-math-errno)
+  # The version script makes every symbol but the entry local, "unique" ones of templates included.
   target_link_options(
     ${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--version-script=${PILEUS_PLUGIN_SCRIPT}
     $<$<NOT:$<BOOL:${PILEUS_SANITIZER}>>:-Wl,--no-undefined>)
