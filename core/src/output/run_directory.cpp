@@ -69,18 +69,20 @@ std::string process_start(long pid) {
 struct LockHolder {
   long pid = 0;
   std::string start, host;
+  bool complete = false;
 
-  static LockHolder self() { return {getpid(), process_start(getpid()), host_name()}; }
+  static LockHolder self() { return {getpid(), process_start(getpid()), host_name(), true}; }
   static LockHolder parse(const std::string& text) {
     LockHolder holder;
     std::istringstream in(text);
     in >> holder.pid >> holder.start >> holder.host;
+    holder.complete = text.ends_with('\n');
     return holder;
   }
   std::string text() const { return fmt::format("{} {} {}\n", pid, start, host); }
   bool is_gone() const {
-    // Empty: its writer died between creating and filling it, for it held the guard meanwhile.
-    if (pid == 0 && host.empty()) return true;
+    // Without its end: its writer died while filling it, for it held the guard meanwhile.
+    if (!complete) return true;
     if (host != host_name() || pid <= 0) return false;
     if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return true;
     const std::string now = process_start(pid);
