@@ -47,7 +47,7 @@ NetVorticity<D> mean_vorticity(const parcels::Store& store, double domain_volume
 
 template <int D>
 Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
-                        const LowStorageScheme& scheme, ShapeIntegrator shape,
+                        const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
                         ReferenceProfile reference)
     : grid_(grid),
       coriolis_(coriolis),
@@ -56,6 +56,9 @@ Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow
       reference_(std::move(reference)),
       deposit_(grid),
       solver_(grid, flow),
+      sharpen_deposited_(grid, mesh::DepositRecord<D>::width, mesh::DepositRecord<D>::vorticity,
+                         mesh::DepositRecord<D>::buoyancy + 1, sharpening),
+      sharpen_flow_(grid, mesh::FlowRecord<D>::width, 0, mesh::FlowRecord<D>::width, sharpening),
       deposited_(grid.nodes() * mesh::DepositRecord<D>::width),
       flow_(grid.nodes() * mesh::FlowRecord<D>::width) {}
 
@@ -100,13 +103,19 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
     values.push_back(buoyancy);
     empty_nodes_ = deposit_.means(store, offsets_, tile_begin, values, deposited_.data());
   }
+  {
+    const PhaseScope scope(times, Phase::inversion);
+    sharpen_deposited_.apply(deposited_.data());
+  }
   solver_.solve(deposited_.data(), wind.velocity, flow_.data(), &summary_, times);
+  flow_is_sharp_ = false;
   return summary_;
 }
 
 template <int D>
 void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, double dt,
                          bool evaluate_only, PhaseTimes& times) {
+  sharpen_flow(times);
   const PhaseScope scope(times, Phase::interpolate);
   StageJob<D> whole{};
   whole.grid = parcels::make_kernel_grid(grid_);
@@ -158,6 +167,15 @@ void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, d
     net_vorticity_increment_[c] = (s == 0 ? 0.0 : scheme_.a[s] * net_vorticity_increment_[c]) + due;
     net_vorticity_change_[c] += scheme_.b[s] * dt * net_vorticity_increment_[c];
   }
+}
+
+/// Once per evaluated flow: what interpolation is about to take away is added beforehand.
+template <int D>
+void Transport<D>::sharpen_flow(PhaseTimes& times) {
+  if (flow_is_sharp_) return;
+  const PhaseScope scope(times, Phase::inversion);
+  sharpen_flow_.apply(flow_.data());
+  flow_is_sharp_ = true;
 }
 
 template <int D>

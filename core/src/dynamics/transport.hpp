@@ -10,6 +10,7 @@
 #include "dynamics/reference_profile.hpp"
 #include "dynamics/runge_kutta.hpp"
 #include "mesh/flow_solver.hpp"
+#include "mesh/sharpening.hpp"
 #include "parcels/deposit.hpp"
 #include "parcels/store.hpp"
 
@@ -33,8 +34,10 @@ struct MeanWind {
 template <int D>
 class Transport {
  public:
+  /// `sharpening` is the strength β of mesh::Sharpening, 0 for none.
   Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
-            const LowStorageScheme& scheme, ShapeIntegrator shape, ReferenceProfile reference);
+            const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
+            ReferenceProfile reference);
 
   /// Deposits the state and solves for its flow; the summary is of this state. `tile_begin` are the
   /// parcel ranges of the deposit's tiles and must stay valid until finish().
@@ -56,7 +59,8 @@ class Transport {
   void probe(parcels::Store& store, PhaseTimes& times);
 
   /// Records of the last evaluate(): deposited means (volume, vorticity, buoyancy perturbation) and
-  /// the flow, in the layouts of mesh/grid.hpp.
+  /// the flow, in the layouts of mesh/grid.hpp; valid until the next stage or probe, which prepare
+  /// the flow for being interpolated.
   const double* deposited() const { return deposited_.data(); }
   const double* flow() const { return flow_.data(); }
   const mesh::FlowSolver<D>& solver() const { return solver_; }
@@ -72,6 +76,7 @@ class Transport {
  private:
   void stage(parcels::Store& store, MeanWind& wind, std::size_t s, double dt, bool evaluate_only,
              PhaseTimes& times);
+  void sharpen_flow(PhaseTimes& times);
   void settle_net_vorticity(parcels::Store& store);
   void reserve(std::size_t parcels);
 
@@ -83,6 +88,7 @@ class Transport {
   parcels::Deposit<D> deposit_;
   parcels::SupportOffsets<D> offsets_;
   mesh::FlowSolver<D> solver_;
+  mesh::Sharpening<D> sharpen_deposited_, sharpen_flow_;
   mesh::FlowSummary summary_;
 
   AlignedArray<double> deposited_, flow_;
@@ -94,6 +100,7 @@ class Transport {
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_{};         // at the start
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_change_{};  // due so far
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_increment_{};
+  bool flow_is_sharp_ = false;
   std::size_t empty_nodes_ = 0;
   std::size_t broken_shapes_ = 0;
 };

@@ -83,11 +83,11 @@ bool Loop::resume() {
   physics_.resume_at(checkpoint.step);
   sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt});
   sequence_.restore_books(checkpoint.data.arrays.at("books"));
-  record_->restore(checkpoint.data);
+  record_->restore(checkpoint.data, checkpoint.time);
   restore_totals(checkpoint.data);
   // The record of the checkpoint's own time is written again: a checkpoint precedes its outputs.
   open_streams(output::Start::resume_at(std::nextafter(checkpoint.time, -1.0)));
-  streams_->resume_at(checkpoint.time);
+  streams_->resume(*record_);
   progress_.message(fmt::format("continuing from {} (t = {:.6g} s, step {})",
                                 path->filename().string(), checkpoint.time, checkpoint.step));
   if (checkpoint.data.texts.at("scene") != scene_.resolved_yaml)

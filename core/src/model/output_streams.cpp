@@ -90,11 +90,6 @@ void Schedule::done(double time) {
   if (every_ > 0) count_ = std::floor(time / every_ + 1e-9) + 1;
 }
 
-void Schedule::resume_at(double time) {
-  // A record due exactly at `time` is still to be written.
-  if (every_ > 0) count_ = std::max(0.0, std::ceil(time / every_ - 1e-9));
-}
-
 OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simulation,
                              const Record& record, const output::RunDirectory& directory,
                              const output::Provenance& provenance, output::Start start)
@@ -209,10 +204,12 @@ void OutputStreams::flush_series(const Record& record) {
   series_->append_records(times, values);
 }
 
-void OutputStreams::resume_at(double time) {
-  for (Schedule* s :
-       {&fields_schedule_, &parcels_schedule_, &profiles_schedule_, &series_schedule_})
-    s->resume_at(time);
+void OutputStreams::resume(const Record& record) {
+  // Not from the time of the checkpoint: a stream on which steps do not land may be overdue there.
+  if (fields_) fields_schedule_.resume_after(fields_->records().times());
+  if (parcels_) parcels_schedule_.resume_after(parcels_->times());
+  if (profiles_) profiles_schedule_.resume_after(profiles_->times());
+  series_schedule_.resume_after(record.times());
 }
 
 std::vector<output::OutputSummary> OutputStreams::summarise() const {

@@ -25,8 +25,10 @@ class Schedule {
   bool due(double time) const { return time >= next() - 1e-9 * every_; }
   /// The record of `time` is written: the next one is the first multiple after it.
   void done(double time);
-  /// Everything before `time` is written, what is due at `time` is not.
-  void resume_at(double time);
+  /// Goes on after records of these times.
+  void resume_after(const std::vector<double>& written) {
+    if (!written.empty()) done(written.back());
+  }
 
  private:
   double every_;
@@ -50,8 +52,8 @@ class OutputStreams {
   void write_due(Simulation& simulation, bool last);
   /// Brings the file of the series up to date with the record.
   void flush_series(const Record& record);
-  /// Treats everything before `time` as written (a resumed run).
-  void resume_at(double time);
+  /// Goes on after what the files of a resumed run and its record hold.
+  void resume(const Record& record);
 
   std::vector<output::OutputSummary> summarise() const;
 

@@ -83,13 +83,16 @@ void Record::save(output::NamedData& data) const {
     data.arrays["record/" + list_[i].name] = series_[i];
 }
 
-void Record::restore(const output::NamedData& data) {
+void Record::restore(const output::NamedData& data, double time) {
   times_ = data.arrays.at("record/times");
+  const std::size_t saved = times_.size();
+  times_.erase(std::lower_bound(times_.begin(), times_.end(), time), times_.end());
   for (std::size_t i = 0; i < list_.size(); ++i) {
     const auto stored = data.arrays.find("record/" + list_[i].name);
     // A diagnostic that is new since the checkpoint has no past.
     series_[i] = stored != data.arrays.end() ? stored->second
-                                             : std::vector<double>(times_.size(), std::nan(""));
+                                             : std::vector<double>(saved, std::nan(""));
+    series_[i].resize(times_.size());
   }
 }
 

@@ -34,7 +34,8 @@ class Record {
   std::vector<output::DiagnosticSummary> summarise() const;
 
   void save(output::NamedData& data) const;
-  void restore(const output::NamedData& data);
+  /// What was saved, up to but without `time`: a run that continues from there measures it again.
+  void restore(const output::NamedData& data, double time);
 
  private:
   std::vector<DiagnosticInfo> list_;

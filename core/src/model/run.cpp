@@ -12,6 +12,7 @@
 #include "coupling/operator_entry.hpp"
 #include "host/search.hpp"
 #include "model/loop.hpp"
+#include "output/checkpoint.hpp"
 #include "scene/read_scene.hpp"
 
 namespace pileus::model {
@@ -37,6 +38,25 @@ output::RunDirectory::Mode directory_mode(const RunRequest& request) {
   return request.force ? output::RunDirectory::Mode::force : output::RunDirectory::Mode::fresh;
 }
 
+/// Continues where that is asked for, or begins. A run that was ended before its first checkpoint
+/// begins anew; results that cannot be continued are not thrown away for that.
+void begin(Loop& loop, const RunRequest& request, const output::RunDirectory& directory,
+           Progress& progress) {
+  if (request.resume) {
+    if (loop.resume()) return;
+    const bool damaged = !output::list_checkpoints(directory.path()).empty();
+    if (damaged || std::filesystem::exists(directory / "summary.json"))
+      throw Error(ExitCode::file,
+                  fmt::format("{}: {}, so the run in it cannot be continued. Replace it with "
+                              "--force, or choose another folder with --out.",
+                              directory.path().string(),
+                              damaged ? "every checkpoint in the folder is damaged"
+                                      : "the folder holds the results of a run but no checkpoint"));
+    progress.message("no checkpoint to continue from: starting at the beginning");
+  }
+  loop.start(request.force || request.resume);
+}
+
 }  // namespace
 
 RunResult run(const RunRequest& request, Progress& progress) {
@@ -53,7 +73,7 @@ RunResult run(const RunRequest& request, Progress& progress) {
 
   const output::RunDirectory directory(results_folder(request, scene), directory_mode(request));
   Loop loop(scene, std::move(operators), directory, progress);
-  if (!request.resume || !loop.resume()) loop.start(request.force);
+  begin(loop, request, directory, progress);
 
   RunResult result;
   result.directory = directory.path().string();

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "model/initial_state.hpp"
 #include "output/grid_fields.hpp"
+#include "parcels/lattice.hpp"
 
 namespace pileus::model {
 namespace {
@@ -44,6 +45,7 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
       background_(scene.background),
       boundaries_(scene.boundaries),
       numerics_(scene.numerics),
+      parcels_per_cell_(scene.parcels.per_cell),
       reference_(grid_.bottom(), grid_.top(), reference_points_per_cell * grid_.nz() + 1,
                  reference_function(scene)),
       buoyancy_(physics),
@@ -78,6 +80,8 @@ void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
       numerics_.shape_integrator == scene::NumericsControl::ShapeIntegrator::exponential
           ? dynamics::ShapeIntegrator::exponential
           : dynamics::ShapeIntegrator::runge_kutta,
+      0.25 * numerics_.window_compensation *
+          mesh::lattice_mean_product(parcels::parcels_per_direction(parcels_per_cell_, D)),
       reference_);
 }
 
@@ -114,8 +118,18 @@ std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
   return {bottom <= allowed, top <= allowed};
 }
 
+/// Bounds and spacing of the mesh: parcels fit no other.
+template <int D>
+std::vector<double> SimulationOf<D>::corners() const {
+  std::vector<double> corners(grid_.lower.begin(), grid_.lower.end());
+  corners.insert(corners.end(), grid_.extent.begin(), grid_.extent.end());
+  corners.insert(corners.end(), grid_.spacing.begin(), grid_.spacing.end());
+  return corners;
+}
+
 template <int D>
 void SimulationOf<D>::save(output::NamedData& data) const {
+  data.arrays["domain"] = corners();
   data.arrays["mean_wind"] = {wind_.velocity[0], wind_.velocity[1]};
   data.counters["zero_wall_vorticity"] = {zero_wall_vorticity_[0], zero_wall_vorticity_[1]};
   data.counters["tile_begin"].assign(tile_begin_.begin(), tile_begin_.end());
@@ -127,8 +141,10 @@ void SimulationOf<D>::restore(const output::NamedData& data) {
   wind_.velocity = {wind.at(0), wind.at(1)};
   const auto& zero = data.counters.at("zero_wall_vorticity");
   const auto& tiles = data.counters.at("tile_begin");
-  if (tiles.size() != deposit_.tiling().tiles().size() + 1 || tiles.back() != store_->size())
-    throw Error(ExitCode::usage, "The checkpoint belongs to a different mesh.");
+  if (data.arrays.at("domain") != corners() ||
+      tiles.size() != deposit_.tiling().tiles().size() + 1 || tiles.back() != store_->size())
+    throw Error(ExitCode::usage,
+                "The checkpoint belongs to another domain or mesh than the scene describes.");
   tile_begin_.assign(tiles.begin(), tiles.end());
   build_transport({zero.at(0) != 0, zero.at(1) != 0});
 }

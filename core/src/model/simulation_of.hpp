@@ -57,6 +57,7 @@ class SimulationOf final : public Simulation {
   void build_transport(std::array<bool, 2> zero_wall_vorticity);
   std::array<bool, 2> walls_without_vorticity() const;
   void require_finite() const;
+  std::vector<double> corners() const;
 
   mesh::Grid<D> grid_;
   scene::TimeControl time_control_;
@@ -64,6 +65,7 @@ class SimulationOf final : public Simulation {
   scene::Background background_;
   scene::Boundaries boundaries_;
   scene::NumericsControl numerics_;
+  int parcels_per_cell_;
   dynamics::ReferenceProfile reference_;
   TracedBuoyancy buoyancy_;
   std::array<bool, 2> zero_wall_vorticity_{false, false};

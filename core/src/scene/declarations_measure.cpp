@@ -118,7 +118,13 @@ const Table& numerics_table() {
                choice("vertical_derivative", &NumericsControl::vertical_derivative,
                       {"compact", "centred"}, "Difference scheme of vertical derivatives."),
                value("spectral_filter", &NumericsControl::spectral_filter, "1",
-                     "Hou-Li filter on the gridded vorticity.")},
+                     "Hou-Li filter on the gridded vorticity."),
+               value("window_compensation", &NumericsControl::window_compensation, "1",
+                     "How much of what deposit and interpolation take from resolved scales of "
+                     "vorticity and buoyancy the flow makes good: 0 nothing, 1 all to fourth "
+                     "order. Parcels' own values are not touched.")
+                   .at_least(0)
+                   .at_most(1)},
       .other = {},
       .finish = {},
       .write_other = {},

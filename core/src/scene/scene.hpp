@@ -178,6 +178,9 @@ struct NumericsControl {
   ShapeIntegrator shape_integrator = ShapeIntegrator::exponential;
   VerticalDerivative vertical_derivative = VerticalDerivative::compact;
   bool spectral_filter = true;  // Hou–Li filter on the gridded vorticity
+  /// How much of what deposit and interpolation take from resolved scales the flow makes good:
+  /// 0 nothing, 1 all to fourth order.
+  double window_compensation = 1;
 };
 
 /// A known solution that a gridded field is compared with. Gives the diagnostics

@@ -24,7 +24,7 @@ struct World {
   World(const mesh::Grid<D>& mesh_grid, double coriolis, ShapeIntegrator shape, double jitter)
       : grid(mesh_grid),
         store(D, {{"buoyancy", "m s-2", parcels::Nature::intensive, "", 0, 0, 0}}),
-        transport(grid, {}, coriolis, carpenter_kennedy_4(), shape, {}),
+        transport(grid, {}, coriolis, carpenter_kennedy_4(), shape, 3.0 / 64, {}),
         upkeep(grid, transport.deposit().tiling(), 0,
                parcels::SplitCriterion<D>::make(grid, 4, 2.89)) {
     parcels::fill_lattice<D>(store, grid, D == 3 ? 8 : 9, jitter, 3);

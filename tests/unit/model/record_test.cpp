@@ -1,0 +1,90 @@
+// The record of diagnostics: statistics, expectations, what is refused.
+#include "model/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace pileus::model {
+namespace {
+
+Record sample() {
+  Record record({{"energy", "m2 s-2", "", true}, {"cloud_fraction", "1", "", false}});
+  record.append(0, {2.0, 0.0});
+  record.append(10, {1.0, 0.0});
+  record.append(30, {3.0, 0.5});
+  return record;
+}
+
+TEST(Record, StatisticsOfTheWholeRun) {
+  const Record record = sample();
+  EXPECT_EQ(record.statistic(0, "initial", {}), 2.0);
+  EXPECT_EQ(record.statistic(0, "final", {}), 3.0);
+  EXPECT_EQ(record.statistic(0, "min", {}), 1.0);
+  EXPECT_EQ(record.statistic(0, "max", {}), 3.0);
+  EXPECT_EQ(record.statistic(0, "mean", {}), 2.0);
+  EXPECT_EQ(record.statistic(0, "relative_change", {}), 0.5);
+  EXPECT_EQ(record.statistic(1, "first_time_above", {}), 30.0);
+  EXPECT_FALSE(record.statistic(0, "median", {}).has_value());
+}
+
+TEST(Record, AnEarlierTimeIsInterpolatedAndEndsTheStatistics) {
+  const Record record = sample();
+  EXPECT_EQ(record.statistic(0, "final", 20.0), 2.0);
+  EXPECT_EQ(record.statistic(0, "max", 20.0), 2.0);
+  EXPECT_FALSE(record.statistic(1, "first_time_above", 20.0).has_value());
+}
+
+TEST(Record, SurvivesACheckpointAndForgetsWhatIsRepeated) {
+  output::NamedData data;
+  sample().save(data);
+  Record restored(sample().list());
+  restored.restore(data, 30);  // the record of the checkpoint's own time is written again
+  EXPECT_EQ(restored.times(), (std::vector<double>{0, 10}));
+  restored.append(30, {3.0, 0.5});
+  EXPECT_EQ(restored.series(0), sample().series(0));
+}
+
+scene::Expectation expectation(const char* diagnostic, const char* statistic,
+                               std::optional<double> low, std::optional<double> high) {
+  scene::Expectation e;
+  e.diagnostic = diagnostic;
+  e.statistic = statistic;
+  e.low = low;
+  e.high = high;
+  return e;
+}
+
+TEST(Judge, BoundsAreInclusiveAndNothingUnmeasuredPasses) {
+  const auto results =
+      judge({expectation("energy", "final", 3.0, 3.0), expectation("energy", "final", {}, 2.9),
+             expectation("energy", "min", 1.1, {}), expectation("absent", "final", {}, {}),
+             expectation("cloud_fraction", "relative_change", {}, 1.0)},
+            sample());
+  ASSERT_EQ(results.size(), 5u);
+  EXPECT_TRUE(results[0].passed);
+  EXPECT_FALSE(results[1].passed);
+  EXPECT_FALSE(results[2].passed);
+  EXPECT_FALSE(results[3].passed);
+  EXPECT_FALSE(results[4].passed);  // 0.5/0 is no number a bound can hold for
+}
+
+TEST(Judge, UnknownNamesAreRefusedWithTheNearestOne) {
+  const std::vector<DiagnosticInfo> list = sample().list();
+  EXPECT_NO_THROW(check_expectations({expectation("energy", "final", {}, {})}, list));
+  try {
+    check_expectations(
+        {expectation("enrgy", "final", {}, {}), expectation("energy", "finl", {}, {})}, list);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    const std::string text = error.what();
+    EXPECT_NE(text.find("'enrgy'; did you mean 'energy'?"), std::string::npos) << text;
+    EXPECT_NE(text.find("'finl'; did you mean 'final'?"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace pileus::model
