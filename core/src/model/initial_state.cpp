@@ -9,7 +9,6 @@
 #include "base/aligned_array.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "parcels/lattice.hpp"
 #include "scene/field_sampler.hpp"
 
 namespace pileus::model {
@@ -92,8 +91,6 @@ void set_vorticity_from_velocity(const scene::Scene& scene, const mesh::Grid<D>&
 template <int D>
 void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, parcels::Store& store,
                         dynamics::MeanWind& wind) {
-  parcels::fill_lattice<D>(store, grid, scene.parcels.per_cell, scene.parcels.jitter,
-                           scene.parcels.seed);
   const Positions<D> at = positions_of<D>(store);
   const auto sample = [&](const scene::FieldDescription& field, double* out) {
     scene::FieldSampler(field, scene).sample(store.size(), at.x(), at.y(), at.z(), out);

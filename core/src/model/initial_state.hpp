@@ -9,7 +9,7 @@
 
 namespace pileus::model {
 
-/// Places the scene's parcels and evaluates its fields at their centres: exactly, not through the
+/// Gives the placed parcels of the store the scene's fields at their centres: exactly, not through the
 /// mesh. A velocity becomes vorticity by differences of the sixth order (step Δ/64: truncation
 /// below 1e-10 of a field that the mesh resolves) and, together with `mean_wind`, gives the
 /// domain-mean wind. Scalars the scene does not set get their declared initial value.

@@ -90,8 +90,8 @@ void Record::restore(const output::NamedData& data, double time) {
   for (std::size_t i = 0; i < list_.size(); ++i) {
     const auto stored = data.arrays.find("record/" + list_[i].name);
     // A diagnostic that is new since the checkpoint has no past.
-    series_[i] = stored != data.arrays.end() ? stored->second
-                                             : std::vector<double>(saved, std::nan(""));
+    series_[i] =
+        stored != data.arrays.end() ? stored->second : std::vector<double>(saved, std::nan(""));
     series_[i].resize(times_.size());
   }
 }

@@ -87,11 +87,28 @@ void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
 
 template <int D>
 void SimulationOf<D>::initialise(const scene::Scene& scene) {
-  fill_initial_state(scene, grid_, *store_, wind_);
   build_transport({false, false});
-  upkeep_.reorder(*store_, transport_->offsets(), times_);
-  tile_begin_ = upkeep_.tile_begin();
+  place_parcels(scene.parcels);
+  fill_initial_state(scene, grid_, *store_, wind_);
   build_transport(walls_without_vorticity());
+}
+
+/// Scattered parcels are brought to fill the cells evenly before they get their fields: later, the
+/// volume correction would carry values away from where they belong, and stir a fluid at rest.
+template <int D>
+void SimulationOf<D>::place_parcels(const scene::ParcelControl& control) {
+  constexpr int settling_rounds = 10;  // each of which cuts the volume error threefold or more
+  parcels::fill_lattice<D>(*store_, grid_, control.per_cell, control.jitter, control.seed);
+  const auto order = [&] {
+    upkeep_.reorder(*store_, transport_->offsets(), times_);
+    tile_begin_ = upkeep_.tile_begin();
+    transport_->offsets().update(*store_);
+  };
+  order();
+  if (control.jitter == 0) return;
+  for (int round = 0; round < settling_rounds; ++round)
+    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit());
+  order();
 }
 
 /// Vertical vorticity on a wall stays zero if it starts at zero and nothing turns the frame about

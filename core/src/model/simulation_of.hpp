@@ -56,6 +56,7 @@ class SimulationOf final : public Simulation {
 
   void build_transport(std::array<bool, 2> zero_wall_vorticity);
   std::array<bool, 2> walls_without_vorticity() const;
+  void place_parcels(const scene::ParcelControl& control);
   void require_finite() const;
   std::vector<double> corners() const;
 
