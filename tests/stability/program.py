@@ -11,6 +11,7 @@ from pathlib import Path
 PROGRAM = os.environ["PILEUS_PROGRAM"]
 SOURCE = Path(os.environ["PILEUS_SOURCE"])
 WORK = Path(os.environ["PILEUS_WORK"])
+ENDS_AT_WRITE = os.environ["PILEUS_ENDS_AT_WRITE"]  # what ends_at_write.c is built to
 
 CONFIGS = SOURCE / "configs" / "scenes"
 SCENES = SOURCE / "tests" / "scenes"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/signals.hpp"
@@ -208,7 +209,9 @@ double Loop::next_time(double allowed) const {
     const double steps = std::ceil((target - time) / allowed * (1 - 1e-12));
     until = steps <= 1 ? target : time + (target - time) / steps;
   }
-  if (!(until > time))
+  // A step that is lost in the rounding of the end's time takes for ever to reach it.
+  const bool endless = allowed < std::numeric_limits<double>::epsilon() * scene_.time.end;
+  if (endless || !(until > time))
     throw Error(ExitCode::numerical,
                 fmt::format("The time step has become too small to advance t = {:.17g} s: {:.3g} s "
                             "is allowed at step {}.",

@@ -72,6 +72,7 @@ RunResult run(const RunRequest& request, Progress& progress) {
   problems.throw_if_any();
 
   const output::RunDirectory directory(results_folder(request, scene), directory_mode(request));
+  install_stop_signals();
   Loop loop(scene, std::move(operators), directory, progress);
   begin(loop, request, directory, progress);
 
