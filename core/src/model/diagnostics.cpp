@@ -271,6 +271,8 @@ void Diagnostics::observe_velocity(Simulation& simulation) {
   set(max_speed_, std::sqrt(sums.speed2));
   set(max_vertical_velocity_, sums.up);
   set(min_vertical_velocity_, sums.down);
+  set(mechanical_,
+      values_[static_cast<std::size_t>(kinetic_)] + values_[static_cast<std::size_t>(potential_)]);
   set(total_,
       values_[static_cast<std::size_t>(kinetic_)] + values_[static_cast<std::size_t>(available_)]);
 }

@@ -136,13 +136,15 @@ void FieldSampler::sample_range(std::size_t begin, std::size_t end, const double
 
 void FieldSampler::sample(std::size_t n, const double* x, const double* y, const double* z,
                           double* out) const {
-  // muParser keeps its stack in the parser: every thread works with a copy of its own.
+  // muParser keeps its stack in the parser: every thread works with a copy of its own. The copies
+  // are made here, by one thread: constructing parsers changes data they all share.
   std::vector<std::unique_ptr<Evaluator>> copies(
       static_cast<std::size_t>(std::max(1, omp_get_max_threads())));
+  if (compiled_)
+    for (auto& copy : copies) copy = std::make_unique<Evaluator>(*compiled_);
   parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
-    auto& copy = copies[static_cast<std::size_t>(omp_get_thread_num())];
-    if (compiled_ && !copy) copy = std::make_unique<Evaluator>(*compiled_);
-    sample_range(begin, end, x, y, z, out, copy.get());
+    sample_range(begin, end, x, y, z, out,
+                 copies[static_cast<std::size_t>(omp_get_thread_num())].get());
   });
 }
 
