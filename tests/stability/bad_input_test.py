@@ -113,7 +113,8 @@ class BadInput(ProgramTest):
 
     def test_values_that_break_the_solution(self):
         for name, vorticity in (("overflow", "1e200*sin(6.28e-3*x)"), ("collapse", "1e100*x*z")):
-            scene = self.write("scene.yaml", f"{CUBE}initial: {{vorticity: ['0', '{vorticity}', '0']}}\n")
+            initial = f"initial: {{vorticity: ['0', '{vorticity}', '0']}}\n"
+            scene = self.write("scene.yaml", CUBE + initial)
             with self.subTest(name):
                 ended = self.run_scene(scene, name)
                 self.assert_refused(ended, NUMERICAL)
@@ -123,7 +124,8 @@ class BadInput(ProgramTest):
                 self.assertEqual(ended.summary["status"], "failed")
 
     def test_no_step_can_be_this_small(self):
-        scene = self.write("scene.yaml", CUBE.replace("end: 10 s", "end: 10 s, step: {fixed: 1e-30 s}"))
+        scene = self.write("scene.yaml",
+                           CUBE.replace("end: 10 s", "end: 10 s, step: {fixed: 1e-30 s}"))
         self.assert_refused(self.run_scene(scene), NUMERICAL, "too small")
 
     def test_operator_values_out_of_range(self):

@@ -44,6 +44,13 @@ class Determinism(ProgramTest):
         self.assert_same_on_any_threads(
             RELAXING_THERMAL, COARSE_RELAXING_THERMAL | {"coupling.scheme": "strang"})
 
+    def test_fields_of_formulas_on_many_threads(self):
+        """Parsers of formulas share what they are made from: threads used to corrupt it at times."""
+        hashes = {self.run_on(THERMAL, {"domain.cells": "[8, 8, 8]", "time.max_steps": 0,
+                                        "time.end": "0 s"}, threads).summary["state_sha256"]
+                  for threads in [1] + 12 * [4]}
+        self.assertEqual(len(hashes), 1)
+
     def test_other_state_other_hash(self):
         """The hash sees a change in the last place of one scalar of one parcel."""
         hashes = set()

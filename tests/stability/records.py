@@ -47,7 +47,8 @@ def differences_of_files(path_a, path_b):
 
 def differences(folder_a, folder_b, files=FILES):
     """All differences between the output files of two runs."""
-    return [line for file in files for line in differences_of_files(folder_a / file, folder_b / file)]
+    return [line for file in files
+            for line in differences_of_files(folder_a / file, folder_b / file)]
 
 
 def read(path, name):
