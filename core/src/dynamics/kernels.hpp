@@ -24,7 +24,7 @@ struct StageJob {
 
   parcels::KernelGrid<D> grid;
   const double* flow;                    // nodes × FlowRecord<D>::width
-  const double* offset[D == 3 ? 6 : 2];  // support offsets of the current state
+  const double* offset[D == 3 ? 6 : 2];  // support offsets; null: computed from the shapes
   double* position[D];
   double* vorticity[vorticity_components];
   double* shape[shape_components];

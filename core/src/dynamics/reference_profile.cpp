@@ -1,5 +1,9 @@
 #include "dynamics/reference_profile.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace pileus::dynamics {
 
 ReferenceProfile::ReferenceProfile(double bottom, double top, int points,
@@ -12,6 +16,18 @@ ReferenceProfile::ReferenceProfile(double bottom, double top, int points,
     zero = zero && value_.back() == 0;
   }
   if (zero) value_.clear();
+  if (zero) return;
+  slope_ = (value_.back() - value_.front()) / (top - bottom);
+  intercept_ = value_.front() - slope_ * bottom;
+  // Straight to the rounding of its values: what a formula like N²·z gives.
+  double largest = 0, defect = 0;
+  for (int i = 0; i < points; ++i) {
+    const double z = bottom + static_cast<double>(i) / (points - 1) * (top - bottom);
+    const double value = value_[static_cast<std::size_t>(i)];
+    largest = std::max(largest, std::abs(value));
+    defect = std::max(defect, std::abs(intercept_ + slope_ * z - value));
+  }
+  linear_ = defect <= 8 * std::numeric_limits<double>::epsilon() * largest;
 }
 
 double ReferenceProfile::operator()(double z) const {

@@ -18,6 +18,10 @@ class ReferenceProfile {
                    const std::function<double(double)>& b_ref);
 
   bool is_zero() const { return value_.empty(); }
+  /// True if the profile is a straight line, then also value(z) = intercept() + slope()·z.
+  bool is_linear() const { return linear_; }
+  double intercept() const { return intercept_; }
+  double slope() const { return slope_; }
   double operator()(double z) const;
   /// db_ref/dz at a height (s⁻²), one-sided at the ends.
   double gradient(double z) const;
@@ -25,6 +29,8 @@ class ReferenceProfile {
  private:
   double bottom_ = 0, inverse_spacing_ = 0;
   std::vector<double> value_;
+  bool linear_ = true;  // as the zero profile is
+  double intercept_ = 0, slope_ = 0;
 };
 
 }  // namespace pileus::dynamics

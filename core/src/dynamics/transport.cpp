@@ -60,20 +60,34 @@ Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow
                          mesh::DepositRecord<D>::buoyancy + 1, sharpening),
       sharpen_flow_(grid, mesh::FlowRecord<D>::width, 0, mesh::FlowRecord<D>::width, sharpening),
       deposited_(grid.nodes() * mesh::DepositRecord<D>::width),
-      flow_(grid.nodes() * mesh::FlowRecord<D>::width) {}
+      flow_(grid.nodes() * mesh::FlowRecord<D>::width),
+      offsets_(lent_arrays()) {}
+
+/// Position increments first, then the shape's.
+template <int D>
+std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components>
+Transport<D>::lent_arrays() {
+  std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components> arrays;
+  for (std::size_t c = 0; c < arrays.size(); ++c)
+    arrays[c] = c < D ? &position_increment_[c] : &shape_increment_[c - D];
+  return arrays;
+}
 
 template <int D>
 void Transport<D>::reserve(std::size_t parcels) {
-  if (position_increment_[0].size() >= parcels + read_ahead) return;
-  // Room for growth, so that the parcel count may vary for many steps without an allocation.
+  // Room for growth, so that the parcel count may vary for many steps without an allocation. Each
+  // array is looked at: sorting swaps some of them for others.
   const std::size_t room = parcels + parcels / 32 + read_ahead;
-  for (auto& a : position_increment_) a.discard_and_resize(room);
-  for (auto& a : vorticity_increment_) a.discard_and_resize(room);
+  const auto provide = [&](AlignedArray<double>& array) {
+    if (array.size() < parcels + read_ahead) array.discard_and_resize(room);
+  };
+  for (auto& array : position_increment_) provide(array);
+  for (auto& array : vorticity_increment_) provide(array);
   const std::size_t used = shape_ == ShapeIntegrator::exponential
                                ? shape_increment_.size()
                                : std::size_t(StageJob<D>::shape_components);
-  for (std::size_t c = 0; c < used; ++c) shape_increment_[c].discard_and_resize(room);
-  if (!reference_.is_zero()) perturbation_.discard_and_resize(room);
+  for (std::size_t c = 0; c < used; ++c) provide(shape_increment_[c]);
+  if (!reference_.is_linear()) provide(perturbation_);
 }
 
 template <int D>
@@ -86,7 +100,7 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
   {
     const PhaseScope scope(times, Phase::closure);
     buoyancy = source.buoyancy(store, time);
-    if (!reference_.is_zero()) {
+    if (!reference_.is_linear()) {
       const double* z = store.position(D - 1);
       parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) perturbation_[p] = buoyancy[p] - reference_(z[p]);
@@ -96,12 +110,14 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
   }
   {
     const PhaseScope scope(times, Phase::deposit);
-    offsets_.update(store);
     std::vector<const double*>& values = deposit_values_;
     values.clear();
     for (int c = 0; c < store.vorticity_components(); ++c) values.push_back(store.vorticity(c));
     values.push_back(buoyancy);
-    empty_nodes_ = deposit_.means(store, offsets_, tile_begin, values, deposited_.data());
+    parcels::LinearReference reference;
+    if (!reference_.is_zero() && reference_.is_linear())
+      reference = {store.vorticity_components(), reference_.intercept(), reference_.slope()};
+    empty_nodes_ = deposit_.means(store, tile_begin, values, reference, deposited_.data());
   }
   {
     const PhaseScope scope(times, Phase::inversion);
@@ -120,8 +136,6 @@ void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, d
   StageJob<D> whole{};
   whole.grid = parcels::make_kernel_grid(grid_);
   whole.flow = flow_.data();
-  for (int c = 0; c < parcels::SupportOffsets<D>::components; ++c)
-    whole.offset[c] = offsets_.component(c);
   for (int d = 0; d < D; ++d) {
     whole.position[d] = store.position(d);
     whole.position_increment[d] = position_increment_[static_cast<std::size_t>(d)].data();
@@ -225,8 +239,7 @@ void Transport<D>::probe(parcels::Store& store, PhaseTimes& times) {
 template <int D>
 std::size_t Transport<D>::allocated_bytes() const {
   std::size_t bytes = deposited_.allocated_bytes() + flow_.allocated_bytes() +
-                      perturbation_.allocated_bytes() + offsets_.allocated_bytes() +
-                      deposit_.allocated_bytes();
+                      perturbation_.allocated_bytes() + deposit_.allocated_bytes();
   for (const auto& a : position_increment_) bytes += a.allocated_bytes();
   for (const auto& a : vorticity_increment_) bytes += a.allocated_bytes();
   for (const auto& a : shape_increment_) bytes += a.allocated_bytes();

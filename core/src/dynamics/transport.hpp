@@ -70,6 +70,7 @@ class Transport {
   std::size_t broken_shapes() const { return broken_shapes_; }
   const ReferenceProfile& reference() const { return reference_; }
   parcels::Deposit<D>& deposit() { return deposit_; }
+  /// Room for support offsets between two steps: it is the memory of the stages' increments.
   parcels::SupportOffsets<D>& offsets() { return offsets_; }
   std::size_t allocated_bytes() const;
 
@@ -79,6 +80,7 @@ class Transport {
   void sharpen_flow(PhaseTimes& times);
   void settle_net_vorticity(parcels::Store& store);
   void reserve(std::size_t parcels);
+  std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components> lent_arrays();
 
   mesh::Grid<D> grid_;
   double coriolis_;
@@ -86,17 +88,17 @@ class Transport {
   ShapeIntegrator shape_;
   ReferenceProfile reference_;
   parcels::Deposit<D> deposit_;
-  parcels::SupportOffsets<D> offsets_;
   mesh::FlowSolver<D> solver_;
   mesh::Sharpening<D> sharpen_deposited_, sharpen_flow_;
   mesh::FlowSummary summary_;
 
   AlignedArray<double> deposited_, flow_;
   std::vector<const double*> deposit_values_;
-  AlignedArray<double> perturbation_;  // b − b_ref(z) of every parcel, when there is a reference
+  AlignedArray<double> perturbation_;  // b − b_ref(z) of every parcel, for a curved reference
   std::array<AlignedArray<double>, D> position_increment_;
   std::array<AlignedArray<double>, StageJob<D>::vorticity_components> vorticity_increment_;
   std::array<AlignedArray<double>, StageJob<D>::gradient_components> shape_increment_;
+  parcels::SupportOffsets<D> offsets_;
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_{};         // at the start
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_change_{};  // due so far
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_increment_{};

@@ -333,8 +333,7 @@ void SimulationOf<D>::grid_field(const std::string& name, std::vector<double>& v
   const int scalar = store_->find_scalar(name);
   if (scalar < 0) throw Error(ExitCode::usage, fmt::format("There is no field '{}'.", name));
   AlignedArray<double> field(grid_.nodes() * Record::width);
-  deposit_.means(*store_, transport_->offsets(), tile_begin_, {store_->scalar(scalar)},
-                 field.data());
+  deposit_.means(*store_, tile_begin_, {store_->scalar(scalar)}, {}, field.data());
   output::copy_nodes(grid_, field.data(), Record::width, 1, values);
 }
 

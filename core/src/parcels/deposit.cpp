@@ -50,14 +50,14 @@ std::size_t divide_column(double* column, int nz, int width) {
 
 template <int D>
 std::size_t SupportOffsets<D>::capacity() const {
-  std::size_t smallest = data_[0].size();
-  for (const auto& component : data_) smallest = std::min(smallest, component.size());
+  std::size_t smallest = data_[0]->size();
+  for (const auto* component : data_) smallest = std::min(smallest, component->size());
   return smallest;
 }
 
 template <int D>
 void SupportOffsets<D>::resize(std::size_t parcels) {
-  for (auto& component : data_) component.discard_and_resize(parcels + parcels / 32 + read_ahead);
+  for (auto* component : data_) component->discard_and_resize(parcels + parcels / 32 + read_ahead);
 }
 
 template <int D>
@@ -75,7 +75,7 @@ void SupportOffsets<D>::update(const Store& store) {
 template <int D>
 std::size_t SupportOffsets<D>::allocated_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& component : data_) bytes += component.allocated_bytes();
+  for (const auto& component : own_) bytes += component.allocated_bytes();
   return bytes;
 }
 
@@ -87,24 +87,33 @@ Deposit<D>::Deposit(const mesh::Grid<D>& grid)
       stray_count_(tiling_.tiles().size()) {}
 
 template <int D>
-void Deposit<D>::run(const Store& store, const SupportOffsets<D>& offsets,
-                     const std::vector<std::size_t>& tile_begin,
-                     const std::vector<const double*>& values, int width, double* field) {
+DepositJob<D> Deposit<D>::describe(const Store& store, const SupportOffsets<D>* offsets,
+                                   const std::vector<const double*>& values, double* field) const {
+  DepositJob<D> job{};
+  job.grid = kernel_grid_;
+  for (int d = 0; d < D; ++d) job.position[d] = store.position(d);
+  for (int c = 0; c < store.shape_components(); ++c) job.shape[c] = store.shape(c);
+  for (int c = 0; offsets != nullptr && c < SupportOffsets<D>::components; ++c)
+    job.offset[c] = offsets->component(c);
+  job.volume = store.volume();
+  job.value_count = static_cast<int>(values.size());
+  for (int f = 0; f < job.value_count; ++f) job.value[f] = values[static_cast<std::size_t>(f)];
+  job.reference_value = -1;
+  job.field = field;
+  return job;
+}
+
+template <int D>
+void Deposit<D>::run(const DepositJob<D>& whole, std::size_t parcels,
+                     const std::vector<std::size_t>& tile_begin, int width) {
   const std::size_t doubles = grid_.nodes() * static_cast<std::size_t>(width);
   parallel_chunks(
       doubles,
-      [&](std::size_t begin, std::size_t end) { std::fill(field + begin, field + end, 0.0); },
+      [&](std::size_t begin, std::size_t end) {
+        std::fill(whole.field + begin, whole.field + end, 0.0);
+      },
       1u << 15);
-  if (strays_.size() < store.size()) strays_.resize(store.size() + store.size() / 8);
-
-  DepositJob<D> whole{};
-  whole.grid = kernel_grid_;
-  for (int d = 0; d < D; ++d) whole.position[d] = store.position(d);
-  for (int c = 0; c < SupportOffsets<D>::components; ++c) whole.offset[c] = offsets.component(c);
-  whole.volume = store.volume();
-  whole.value_count = static_cast<int>(values.size());
-  for (int f = 0; f < whole.value_count; ++f) whole.value[f] = values[static_cast<std::size_t>(f)];
-  whole.field = field;
+  if (strays_.size() < parcels) strays_.resize(parcels + parcels / 32);
 
   for (const auto& colour : tiling_.colours())
     parallel_tasks(colour.size(), [&](std::size_t task) {
@@ -135,11 +144,8 @@ void Deposit<D>::run(const Store& store, const SupportOffsets<D>& offsets,
 }
 
 template <int D>
-std::size_t Deposit<D>::means(const Store& store, const SupportOffsets<D>& offsets,
-                              const std::vector<std::size_t>& tile_begin,
-                              const std::vector<const double*>& values, double* field) {
+std::size_t Deposit<D>::finish_means(double* field) const {
   constexpr int width = mesh::DepositRecord<D>::width;
-  run(store, offsets, tile_begin, values, width, field);
   const std::size_t stride = static_cast<std::size_t>(grid_.levels()) * width;
   return ordered_reduce(
       grid_.columns(), std::size_t{0},
@@ -155,9 +161,30 @@ std::size_t Deposit<D>::means(const Store& store, const SupportOffsets<D>& offse
 }
 
 template <int D>
+std::size_t Deposit<D>::means(const Store& store, const SupportOffsets<D>& offsets,
+                              const std::vector<std::size_t>& tile_begin,
+                              const std::vector<const double*>& values, double* field) {
+  run(describe(store, &offsets, values, field), store.size(), tile_begin,
+      mesh::DepositRecord<D>::width);
+  return finish_means(field);
+}
+
+template <int D>
+std::size_t Deposit<D>::means(const Store& store, const std::vector<std::size_t>& tile_begin,
+                              const std::vector<const double*>& values,
+                              const LinearReference& reference, double* field) {
+  DepositJob<D> job = describe(store, nullptr, values, field);
+  job.reference_value = reference.value;
+  job.reference_intercept = reference.intercept;
+  job.reference_slope = reference.slope;
+  run(job, store.size(), tile_begin, mesh::DepositRecord<D>::width);
+  return finish_means(field);
+}
+
+template <int D>
 void Deposit<D>::volume(const Store& store, const SupportOffsets<D>& offsets,
                         const std::vector<std::size_t>& tile_begin, double* field) {
-  run(store, offsets, tile_begin, {}, 1, field);
+  run(describe(store, &offsets, {}, field), store.size(), tile_begin, 1);
   const std::size_t stride = static_cast<std::size_t>(grid_.levels());
   parallel_chunks(
       grid_.columns(),

@@ -51,82 +51,116 @@ struct PrincipalAxes3 {
   Vector3<T> major, middle;  // unit vectors of a and b
 };
 
-/// Eigen-decomposition by deflation: the best separated eigenvalue of the deviator first, from the
-/// depressed cubic, then the remaining 2×2 problem (method of Scherzinger and Dohrmann 2008,
-/// doi:10.1016/j.cma.2008.03.031, with the cubic's root by Newton steps instead of arccosines).
-/// Every threshold is relative to the matrix, so units of length do not matter. For a sphere the
-/// axes are arbitrary orthonormal vectors.
+/// √x for x ≥ 0, by way of the inverse root; zero below 1e-280.
 template <class T>
-static inline PrincipalAxes3<T> principal_axes(const Symmetric3<T>& b) {
-  const T mean = (b.xx + b.yy + b.zz) * (1.0 / 3.0);
-  // Work on the deviator scaled to order one, so that squares and cubes neither over- nor
-  // underflow.
-  const T inverse_mean = 1.0 / mean;
-  Symmetric3<T> d{(b.xx - mean) * inverse_mean, b.xy * inverse_mean, b.xz * inverse_mean,
-                  (b.yy - mean) * inverse_mean, b.yz * inverse_mean, (b.zz - mean) * inverse_mean};
+static inline T root(const T& x) {
+  const T floor = x * 0.0 + 1e-280;
+  return select(x > floor, x * inverse_square_root(maximum(x, floor)), x * 0.0);
+}
+
+/// The deviator of a matrix relative to its mean eigenvalue, and its best separated eigenvalue.
+template <class T>
+struct SeparatedEigenvalue {
+  Symmetric3<T> deviator;
+  T value;  // relative to the mean
+  T sign;   // +1: it is the largest of the three, −1: the smallest
+};
+
+/// From the depressed cubic of the deviator: x = 2 cos(arccos(r)/3) in [√3, 2] solves x³ − 3x = 2r.
+/// The quadratic start is within 0.003; Newton steps with a rough inverse of f' ≥ 6 reduce the
+/// error to 7e-6, 4e-10, 3e-14 and below rounding.
+template <class T>
+static inline SeparatedEigenvalue<T> separate(const Symmetric3<T>& b, const T& mean) {
+  const T scale = 1.0 / mean;  // so that squares and cubes neither over- nor underflow
+  const Symmetric3<T> d{(b.xx - mean) * scale, b.xy * scale, b.xz * scale,
+                        (b.yy - mean) * scale, b.yz * scale, (b.zz - mean) * scale};
   const T j2 =
       0.5 * (d.xx * d.xx + d.yy * d.yy + d.zz * d.zz) + d.xy * d.xy + d.xz * d.xz + d.yz * d.yz;
   const T j3 = d.xx * (d.yy * d.zz - d.yz * d.yz) - d.xy * (d.xy * d.zz - d.yz * d.xz) +
                d.xz * (d.xy * d.yz - d.yy * d.xz);
   // Below this the shape is a sphere to rounding; the floor keeps the divisions finite.
   const T p2 = maximum(j2 * (1.0 / 3.0), j2 * 0.0 + 1e-32);
-  const T p = square_root(p2);
-  const T r_signed = 0.5 * j3 / (p2 * p);
-  const auto prolate = r_signed >= 0.0;  // the separated eigenvalue is the largest
-  const T r = minimum(absolute(r_signed), r_signed * 0.0 + 1.0);
-  // Root x = 2 cos(arccos(r)/3) in [√3, 2] of x³ − 3x = 2r. The quadratic start is within 0.003;
-  // three Newton steps (x'' bounded, f' ≥ 6) leave less than 1e-18.
+  const T inverse_p = inverse_square_root(p2);
+  const T r_signed = 0.5 * j3 * (inverse_p * inverse_p) * inverse_p;
+  const T r = minimum(absolute(r_signed), j2 * 0.0 + 1.0);
   T x = 1.7320508075688772 + r * (1.0 / 3.0 - 0.0653841409022105 * r);
-  for (int newton = 0; newton < 3; ++newton)
-    x = x - (x * (x * x - 3.0) - 2.0 * r) / (3.0 * (x * x - 1.0));
-  const T sign = select(prolate, j2 * 0.0 + 1.0, j2 * 0.0 - 1.0);
-  const T separated = sign * p * x;
+  for (int newton = 0; newton < 4; ++newton)
+    x = x - (x * (x * x - 3.0) - 2.0 * r) * rough_inverse(3.0 * (x * x - 1.0));
+  const T sign = select(r_signed >= 0.0, j2 * 0.0 + 1.0, j2 * 0.0 - 1.0);
+  return {d, sign * (p2 * inverse_p) * x, sign};
+}
 
-  // Null vector of d − separated·I: the longest of the three cross products of its rows.
-  const Vector3<T> row0{d.xx - separated, d.xy, d.xz}, row1{d.xy, d.yy - separated, d.yz},
-      row2{d.xz, d.yz, d.zz - separated};
+/// Unit vector in the null space of d − value·I: the longest of the three cross products of its
+/// rows; any unit vector for a sphere.
+template <class T>
+static inline Vector3<T> null_vector(const Symmetric3<T>& d, const T& value) {
+  const Vector3<T> row0{d.xx - value, d.xy, d.xz}, row1{d.xy, d.yy - value, d.yz},
+      row2{d.xz, d.yz, d.zz - value};
   const Vector3<T> c01 = cross(row0, row1), c02 = cross(row0, row2), c12 = cross(row1, row2);
   const T n01 = dot(c01, c01), n02 = dot(c02, c02), n12 = dot(c12, c12);
-  Vector3<T> first = select(n02 > n01, c02, c01);
+  Vector3<T> longest = select(n02 > n01, c02, c01);
   T norm2 = maximum(n01, n02);
-  first = select(n12 > norm2, c12, first);
+  longest = select(n12 > norm2, c12, longest);
   norm2 = maximum(norm2, n12);
   const auto sphere = norm2 <= 1e-60;
-  const T unit = 1.0 / square_root(select(sphere, j2 * 0.0 + 1.0, norm2));
-  first = select(sphere, Vector3<T>{j2 * 0.0 + 1.0, j2 * 0.0, j2 * 0.0}, scaled(unit, first));
+  const T one = norm2 * 0.0 + 1.0, zero = norm2 * 0.0;
+  return select(sphere, Vector3<T>{one, zero, zero},
+                scaled(inverse_square_root(select(sphere, one, norm2)), longest));
+}
 
-  // Orthonormal basis (u, v) of the plane perpendicular to `first`.
-  const auto x_small = absolute(first.x) <= absolute(first.z);
-  Vector3<T> u = select(x_small, Vector3<T>{j2 * 0.0, first.z, -first.y},
-                        Vector3<T>{first.y, -first.x, j2 * 0.0});
-  u = scaled(T(1.0 / square_root(dot(u, u))), u);
-  const Vector3<T> v = cross(first, u);
+/// The 2×2 problem that is left in the plane perpendicular to a known eigenvector.
+template <class T>
+struct PlaneAxes {
+  T upper, lower;        // eigenvalues
+  Vector3<T> high, low;  // their unit vectors
+};
+
+/// Upper eigenvector at the angle φ from u, cos 2φ = half_difference/radius: the numerically safe
+/// half-angle first, the other from the product sin φ cos φ = uv/(2 radius).
+template <class T>
+static inline PlaneAxes<T> plane_axes(const Symmetric3<T>& d, const Vector3<T>& normal) {
+  const T zero = normal.x * 0.0, one = zero + 1.0;
+  Vector3<T> u =
+      select(absolute(normal.x) <= absolute(normal.z), Vector3<T>{zero, normal.z, -normal.y},
+             Vector3<T>{normal.y, -normal.x, zero});
+  u = scaled(inverse_square_root(dot(u, u)), u);
+  const Vector3<T> v = cross(normal, u);
   const Vector3<T> du = times(d, u), dv = times(d, v);
   const T uu = dot(u, du), uv = dot(u, dv), vv = dot(v, dv);
   const T half_difference = 0.5 * (uu - vv), half_sum = 0.5 * (uu + vv);
-  const T radius = square_root(half_difference * half_difference + uv * uv);
-  const T upper = half_sum + radius, lower = half_sum - radius;
-  // Upper eigenvector of the 2×2 block at angle φ: cos 2φ = half_difference/radius. Take the
-  // numerically safe half-angle first, the other from the product sin φ cos φ = uv/(2 radius).
-  const auto round = radius <= 1e-30;
-  const T inverse_radius = 1.0 / select(round, j2 * 0.0 + 1.0, radius);
-  const T cos2 = select(round, j2 * 0.0 + 1.0, half_difference * inverse_radius);
-  const T sin2 = select(round, j2 * 0.0, uv * inverse_radius);
+  const T radius2 = half_difference * half_difference + uv * uv;
+  const auto round = radius2 <= 1e-60;
+  const T inverse_radius = inverse_square_root(select(round, one, radius2));
+  const T radius = select(round, zero, radius2 * inverse_radius);
+  const T cos2 = select(round, one, half_difference * inverse_radius);
+  const T sin2 = select(round, zero, uv * inverse_radius);
+  const T large2 = 0.5 * (1.0 + absolute(cos2));
+  const T inverse_large = inverse_square_root(large2);
+  const T large = large2 * inverse_large, small = 0.5 * sin2 * inverse_large;
   const auto near_u = cos2 >= 0.0;
-  const T large = square_root(0.5 * (1.0 + absolute(cos2)));
-  const T small = 0.5 * sin2 / large;
-  const T cos1 = select(near_u, large, small);
-  const T sin1 = select(near_u, small, large);
-  const Vector3<T> high{cos1 * u.x + sin1 * v.x, cos1 * u.y + sin1 * v.y, cos1 * u.z + sin1 * v.z};
-  const Vector3<T> low{cos1 * v.x - sin1 * u.x, cos1 * v.y - sin1 * u.y, cos1 * v.z - sin1 * u.z};
+  const T c = select(near_u, large, small), s = select(near_u, small, large);
+  return {half_sum + radius,
+          half_sum - radius,
+          {c * u.x + s * v.x, c * u.y + s * v.y, c * u.z + s * v.z},
+          {c * v.x - s * u.x, c * v.y - s * u.y, c * v.z - s * u.z}};
+}
 
-  PrincipalAxes3<T> axes;
-  axes.a2 = mean * (1.0 + select(prolate, separated, upper));
-  axes.b2 = mean * (1.0 + select(prolate, upper, lower));
-  axes.c2 = mean * (1.0 + select(prolate, lower, separated));
-  axes.major = select(prolate, first, high);
-  axes.middle = select(prolate, high, low);
-  return axes;
+/// Eigen-decomposition by deflation: the best separated eigenvalue of the deviator first, then the
+/// remaining 2×2 problem (method of Scherzinger and Dohrmann 2008, doi:10.1016/j.cma.2008.03.031,
+/// with the cubic's root by Newton steps instead of arccosines). Every threshold is relative to the
+/// matrix, so units of length do not matter. For a sphere the axes are arbitrary orthonormal
+/// vectors.
+template <class T>
+static inline PrincipalAxes3<T> principal_axes(const Symmetric3<T>& b) {
+  const T mean = (b.xx + b.yy + b.zz) * (1.0 / 3.0);
+  const SeparatedEigenvalue<T> separated = separate(b, mean);
+  const Vector3<T> first = null_vector(separated.deviator, separated.value);
+  const PlaneAxes<T> plane = plane_axes(separated.deviator, first);
+  const auto prolate = separated.sign > 0.0;
+  return {mean * (1.0 + select(prolate, separated.value, plane.upper)),
+          mean * (1.0 + select(prolate, plane.upper, plane.lower)),
+          mean * (1.0 + select(prolate, plane.lower, separated.value)),
+          select(prolate, first, plane.high), select(prolate, plane.high, plane.low)};
 }
 
 template <class T>
@@ -165,8 +199,8 @@ template <class T>
 static inline SupportOffsets3<T> support_offsets(const Symmetric3<T>& b) {
   const PrincipalAxes3<T> axes = principal_axes(b);
   // √(2/5)/√2 = √(1/5): each point combines both axes with cos π/4.
-  const T along_major = square_root(0.2 * maximum(axes.a2 - axes.c2, axes.a2 * 0.0));
-  const T along_middle = square_root(0.2 * maximum(axes.b2 - axes.c2, axes.a2 * 0.0));
+  const T along_major = root(T(0.2 * (axes.a2 - axes.c2)));
+  const T along_middle = root(T(0.2 * (axes.b2 - axes.c2)));
   const Vector3<T> eta = scaled(along_major, axes.major), tau = scaled(along_middle, axes.middle);
   return {{eta.x + tau.x, eta.y + tau.y, eta.z + tau.z},
           {eta.x - tau.x, eta.y - tau.y, eta.z - tau.z}};

@@ -12,10 +12,13 @@ template <int D>
 struct DepositJob {
   KernelGrid<D> grid;
   const double* position[D];
-  const double* offset[D == 3 ? 6 : 2];  // support-point offsets
+  const double* shape[D == 3 ? 6 : 3];
+  const double* offset[D == 3 ? 6 : 2];  // support-point offsets; null: computed from the shapes
   const double* volume;
   const double* value[7];  // per-volume quantities; value_count of them
   int value_count;
+  int reference_value;  // value less intercept + slope·z; −1: none
+  double reference_intercept, reference_slope;
   double* field;  // nodes × width, sums are added here
   std::size_t begin, end;
   /// Base cells the tile may touch: cell (index − first) mod n must be below `count`.

@@ -59,6 +59,27 @@ static inline Pack square_root(Pack x) {
 #endif
 }
 
+/// 1/√x for x > 0 to within two units in the last place: an estimate of 14 bits refined twice,
+/// where there is one, at a third of the time of a root and a division.
+static inline Pack inverse_square_root(Pack x) {
+#if defined(__AVX512F__)
+  Pack y = _mm512_rsqrt14_pd(x);
+  for (int step = 0; step < 2; ++step) y = y + 0.5 * y * (1.0 - x * y * y);
+  return y;
+#else
+  return 1.0 / square_root(x);
+#endif
+}
+
+/// 1/x to 14 bits or better, for iterations that correct themselves.
+static inline Pack rough_inverse(Pack x) {
+#if defined(__AVX512F__)
+  return _mm512_rcp14_pd(x);
+#else
+  return 1.0 / x;
+#endif
+}
+
 /// Largest integer not above x, as 32-bit integers; x must lie within ±2^31.
 static inline IntPack floor_to_int(Pack x) {
   const IntPack truncated = __builtin_convertvector(x, IntPack);
@@ -99,6 +120,12 @@ static inline bool any(bool m) {
 }
 static inline double square_root(double a) {
   return __builtin_sqrt(a);
+}
+static inline double inverse_square_root(double a) {
+  return 1.0 / __builtin_sqrt(a);
+}
+static inline double rough_inverse(double a) {
+  return 1.0 / a;
 }
 
 }  // namespace pileus::PILEUS_ISA

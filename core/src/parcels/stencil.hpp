@@ -121,11 +121,6 @@ static inline void place_point(const KernelGrid<2>& grid, Pack x, Pack z, double
   put(stencil.cell[point][0], i.low);
 }
 
-/// Support-point offsets of parcels, one array per component: 3D first.x y z, second.x y z;
-/// 2D x, z.
-template <int D>
-inline constexpr int offset_components = D == 3 ? 6 : 2;
-
 /// Most parcels are compact and have all points in one cell, at a quarter of the node accesses.
 template <int D>
 static inline void gather_points(Stencil<D>& stencil) {
@@ -158,24 +153,53 @@ static inline void for_each_column(const Stencil<D>& stencil, int lane, Visit&& 
             stencil.weight[s][2 * c + 1][lane]);
 }
 
-static inline void place_points(const KernelGrid<3>& grid, const double* const* position,
-                                const double* const* offset, std::size_t p, Stencil<3>& stencil) {
-  const Pack x = load(position[0] + p), y = load(position[1] + p), z = load(position[2] + p);
-  const Pack px = load(offset[0] + p), py = load(offset[1] + p), pz = load(offset[2] + p);
-  const Pack qx = load(offset[3] + p), qy = load(offset[4] + p), qz = load(offset[5] + p);
-  place_point(grid, x + px, y + py, z + pz, 0.25, 0, stencil);
-  place_point(grid, x + qx, y + qy, z + qz, 0.25, 1, stencil);
-  place_point(grid, x - px, y - py, z - pz, 0.25, 2, stencil);
-  place_point(grid, x - qx, y - qy, z - qz, 0.25, 3, stencil);
+static inline void place_points(const KernelGrid<3>& grid, Pack x, Pack y, Pack z,
+                                const SupportOffsets3<Pack>& offset, Stencil<3>& stencil) {
+  const Vector3<Pack>&p = offset.first, &q = offset.second;
+  place_point(grid, x + p.x, y + p.y, z + p.z, 0.25, 0, stencil);
+  place_point(grid, x + q.x, y + q.y, z + q.z, 0.25, 1, stencil);
+  place_point(grid, x - p.x, y - p.y, z - p.z, 0.25, 2, stencil);
+  place_point(grid, x - q.x, y - q.y, z - q.z, 0.25, 3, stencil);
   gather_points(stencil);
 }
-static inline void place_points(const KernelGrid<2>& grid, const double* const* position,
-                                const double* const* offset, std::size_t p, Stencil<2>& stencil) {
-  const Pack x = load(position[0] + p), z = load(position[1] + p);
-  const Pack px = load(offset[0] + p), pz = load(offset[1] + p);
-  place_point(grid, x + px, z + pz, 0.5, 0, stencil);
-  place_point(grid, x - px, z - pz, 0.5, 1, stencil);
+static inline void place_points(const KernelGrid<2>& grid, Pack x, Pack z,
+                                const SupportOffsets2<Pack>& offset, Stencil<2>& stencil) {
+  place_point(grid, x + offset.x, z + offset.z, 0.5, 0, stencil);
+  place_point(grid, x - offset.x, z - offset.z, 0.5, 1, stencil);
   gather_points(stencil);
+}
+
+static inline Symmetric3<Pack> load_shape_3d(const double* const* shape, std::size_t p) {
+  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p),
+          load(shape[3] + p), load(shape[4] + p), load(shape[5] + p)};
+}
+static inline Symmetric2<Pack> load_shape_2d(const double* const* shape, std::size_t p) {
+  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p)};
+}
+
+/// Points of parcels p … p + 7: from stored offsets where there are any, else from the shapes. Both
+/// give the same bits.
+template <class Job>
+static inline void place_points(const Job& job, std::size_t p, Stencil<3>& stencil) {
+  const Pack x = load(job.position[0] + p), y = load(job.position[1] + p),
+             z = load(job.position[2] + p);
+  if (job.offset[0] == nullptr)
+    place_points(job.grid, x, y, z, support_offsets(load_shape_3d(job.shape, p)), stencil);
+  else
+    place_points(job.grid, x, y, z,
+                 SupportOffsets3<Pack>{
+                     {load(job.offset[0] + p), load(job.offset[1] + p), load(job.offset[2] + p)},
+                     {load(job.offset[3] + p), load(job.offset[4] + p), load(job.offset[5] + p)}},
+                 stencil);
+}
+template <class Job>
+static inline void place_points(const Job& job, std::size_t p, Stencil<2>& stencil) {
+  const Pack x = load(job.position[0] + p), z = load(job.position[1] + p);
+  if (job.offset[0] == nullptr)
+    place_points(job.grid, x, z, support_offsets(load_shape_2d(job.shape, p)), stencil);
+  else
+    place_points(job.grid, x, z,
+                 SupportOffsets2<Pack>{load(job.offset[0] + p), load(job.offset[1] + p)}, stencil);
 }
 
 /// Transposes an 8×8 block held in eight packs.

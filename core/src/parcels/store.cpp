@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "base/parallel.hpp"
 
@@ -73,20 +74,28 @@ void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double
         chunk);
     column.swap(spare);
   }
-  spare_uid_.discard_and_resize(capacity_ + read_ahead);
+  // Identities pass through the spare as bytes: it has the room, and no memory of their own is
+  // kept.
+  static_assert(sizeof(std::uint64_t) == sizeof(double));
   parallel_chunks(
       count,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) spare_uid_[p] = uid_[source[p]];
+        for (std::size_t p = begin; p < end; ++p)
+          std::memcpy(spare.data() + p, uid_.data() + source[p], sizeof(std::uint64_t));
       },
       chunk);
-  uid_.swap(spare_uid_);
+  parallel_chunks(
+      count,
+      [&](std::size_t begin, std::size_t end) {
+        std::memcpy(uid_.data() + begin, spare.data() + begin,
+                    (end - begin) * sizeof(std::uint64_t));
+      },
+      chunk);
   size_ = count;
 }
 
 std::size_t Store::allocated_bytes() const {
-  std::size_t bytes =
-      uid_.allocated_bytes() + spare_uid_.allocated_bytes();
+  std::size_t bytes = uid_.allocated_bytes();
   for (const auto& column : columns_) bytes += column.allocated_bytes();
   return bytes;
 }

@@ -79,8 +79,8 @@ class Store {
   int first_scalar() const { return dimension_ + 1 + vorticity_components() + shape_components(); }
 
   /// Reorders all state so that new parcel k is old parcel source[k]; `source` may repeat and drop
-  /// parcels. Derived scalars are resized and left undefined. `spare` lends its memory: its contents
-  /// are lost, and it may come back as another array of at least its size.
+  /// parcels. Derived scalars are resized and left undefined. `spare` lends its memory: its
+  /// contents are lost, and it may come back as another array of at least its size.
   void gather(const std::vector<std::uint32_t>& source, AlignedArray<double>& spare);
 
   std::size_t allocated_bytes() const;
@@ -93,7 +93,7 @@ class Store {
   std::vector<Scalar> scalars_;  // intensive and extensive first, then derived
   int state_columns_ = 0;
   std::vector<AlignedArray<double>> columns_;
-  AlignedArray<std::uint64_t> uid_, spare_uid_;
+  AlignedArray<std::uint64_t> uid_;
   std::size_t capacity_ = 0;  // parcels there is room for
 };
 

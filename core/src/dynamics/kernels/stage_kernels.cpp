@@ -199,7 +199,7 @@ void stage_3d(StageJob<3>& job) {
   Stencil<3> stencil;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = job.end - p;
-    place_points(job.grid, const_cast<const double* const*>(job.position), job.offset, p, stencil);
+    place_points(job, p, stencil);
     Pack low[8], high[8];
     interpolate(job.flow, stencil, count, low, high);
     const auto value = [&](int f) { return f < 8 ? low[f] : high[f - 8]; };
@@ -221,7 +221,7 @@ void stage_2d(StageJob<2>& job) {
   Stencil<2> stencil;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = job.end - p;
-    place_points(job.grid, const_cast<const double* const*>(job.position), job.offset, p, stencil);
+    place_points(job, p, stencil);
     Pack value[8];
     interpolate(job.flow, stencil, count, value);
     for (int d = 0; d < 2; ++d)

@@ -11,14 +11,6 @@ using parcels::DisplaceJob;
 
 // ---- support points ------------------------------------------------------------------------
 
-Symmetric3<Pack> load_shape_3d(const double* const* shape, std::size_t p) {
-  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p),
-          load(shape[3] + p), load(shape[4] + p), load(shape[5] + p)};
-}
-Symmetric2<Pack> load_shape_2d(const double* const* shape, std::size_t p) {
-  return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p)};
-}
-
 void offsets_3d(const double* const* shape, double* const* offset, std::size_t begin,
                 std::size_t end) {
   for (std::size_t p = begin; p < end; p += lanes) {
@@ -90,12 +82,15 @@ unsigned sort_out_strays(DepositJob<D>& job, const Stencil<D>& stencil, std::siz
 void deposit_3d(DepositJob<3>& job) {
   Stencil<3> stencil;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job.grid, job.position, job.offset, p, stencil);
+    place_points(job, p, stencil);
     const unsigned inside = sort_out_strays<3>(job, stencil, p);
     Pack record[8];
     record[0] = load(job.volume + p);
     for (int f = 0; f < 7; ++f)
       record[f + 1] = f < job.value_count ? record[0] * load(job.value[f] + p) : Pack{};
+    if (job.reference_value >= 0)
+      record[job.reference_value + 1] -=
+          record[0] * (job.reference_intercept + job.reference_slope * load(job.position[2] + p));
     transpose(record);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
@@ -114,7 +109,7 @@ typedef double Record2 __attribute__((vector_size(32)));
 void deposit_2d(DepositJob<2>& job) {
   Stencil<2> stencil;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job.grid, job.position, job.offset, p, stencil);
+    place_points(job, p, stencil);
     const unsigned inside = sort_out_strays<2>(job, stencil, p);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
@@ -122,6 +117,9 @@ void deposit_2d(DepositJob<2>& job) {
       Record2 value{volume, 0, 0, 0};
       for (int f = 0; f < 3; ++f)
         if (f < job.value_count) value[f + 1] = volume * job.value[f][p + lane];
+      if (job.reference_value >= 0)
+        value[job.reference_value + 1] -=
+            volume * (job.reference_intercept + job.reference_slope * job.position[1][p + lane]);
       for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
         Record2* node = reinterpret_cast<Record2*>(job.field) + at;
         node[0] += below * value;
@@ -135,7 +133,7 @@ template <int D>
 void deposit_volume(DepositJob<D>& job) {
   Stencil<D> stencil;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job.grid, job.position, job.offset, p, stencil);
+    place_points(job, p, stencil);
     const unsigned inside = sort_out_strays<D>(job, stencil, p);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
