@@ -40,7 +40,7 @@ class Transport {
             ReferenceProfile reference);
 
   /// Deposits the state and solves for its flow; the summary is of this state. `tile_begin` are the
-  /// parcel ranges of the deposit's tiles and must stay valid until finish().
+  /// parcel ranges of the deposit's tiles and must stay valid until finish_step().
   const mesh::FlowSummary& evaluate(parcels::Store& store, BuoyancySource& source,
                                     const std::vector<std::size_t>& tile_begin,
                                     const MeanWind& wind, double time, PhaseTimes& times);

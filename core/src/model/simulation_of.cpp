@@ -30,6 +30,20 @@ dynamics::TimeStepControl make_step_control(const scene::TimeControl& time) {
   return {time.alpha, time.courant, cap, time.fixed};
 }
 
+/// Nodes and parcels are counted in 32 bits, parcels with room for their number to grow fourfold.
+template <int D>
+void require_countable(const mesh::Grid<D>& grid, int per_cell) {
+  const double nodes = static_cast<double>(grid.nodes());
+  const double parcels = 4.0 * per_cell * static_cast<double>(grid.cell_count());
+  if (nodes < std::numeric_limits<std::int32_t>::max() &&
+      parcels < std::numeric_limits<std::uint32_t>::max())
+    return;
+  throw Error(ExitCode::usage,
+              fmt::format("The domain has {:.3g} nodes and starts with {:.3g} parcels; one process "
+                          "can hold 2.1e9 nodes and start with 1.07e9 parcels.",
+                          nodes, parcels / 4));
+}
+
 /// The reference profile resolves the mesh sixteen-fold: an exact reproduction of linear ones, and
 /// of piecewise linear ones with knots on the levels.
 constexpr int reference_points_per_cell = 16;
@@ -55,6 +69,7 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
                                                scene.parcels.max_volume_ratio)),
       correction_(grid_, {scene.parcels.correction_iterations, scene.parcels.gradient_prefactor,
                           scene.parcels.max_compression}) {
+  require_countable(grid_, scene.parcels.per_cell);
   store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
 }
 

@@ -40,6 +40,7 @@ std::size_t divide_column(double* column, int nz, int width) {
       const double inverse = 1.0 / node[0];
       for (int f = 1; f < width; ++f) node[f] *= inverse;
     } else {
+      std::fill(node, node + width, 0.0);
       ++empty;
     }
   }

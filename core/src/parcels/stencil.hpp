@@ -93,8 +93,9 @@ static inline void place_point(const KernelGrid<3>& grid, Pack x, Pack y, Pack z
   put(stencil.node[point][2], (row_high + i.low) * grid.levels + k.low);
   put(stencil.node[point][3], (row_high + i.high) * grid.levels + k.low);
   const Pack above = share * k.fraction, below = share - above;
-  const Pack w11 = i.fraction * j.fraction, w10 = i.fraction - w11, w01 = j.fraction - w11,
-             w00 = 1.0 - i.fraction - w01;
+  // Products, not differences: no weight may be negative, however little.
+  const Pack fx = i.fraction, fy = j.fraction, gx = 1.0 - fx, gy = 1.0 - fy;
+  const Pack w00 = gx * gy, w10 = fx * gy, w01 = gx * fy, w11 = fx * fy;
   put(stencil.weight[point][0], w00 * below);
   put(stencil.weight[point][1], w00 * above);
   put(stencil.weight[point][2], w10 * below);
