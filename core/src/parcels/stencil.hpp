@@ -178,29 +178,53 @@ static inline Symmetric2<Pack> load_shape_2d(const double* const* shape, std::si
   return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p)};
 }
 
-/// Points of parcels p … p + 7: from stored offsets where there are any, else from the shapes. Both
-/// give the same bits.
-template <class Job>
-static inline void place_points(const Job& job, std::size_t p, Stencil<3>& stencil) {
-  const Pack x = load(job.position[0] + p), y = load(job.position[1] + p),
-             z = load(job.position[2] + p);
-  if (job.offset[0] == nullptr)
-    place_points(job.grid, x, y, z, support_offsets(load_shape_3d(job.shape, p)), stencil);
-  else
-    place_points(job.grid, x, y, z,
-                 SupportOffsets3<Pack>{
-                     {load(job.offset[0] + p), load(job.offset[1] + p), load(job.offset[2] + p)},
-                     {load(job.offset[3] + p), load(job.offset[4] + p), load(job.offset[5] + p)}},
+/// Support offsets of a few groups of parcels, computed ahead of their use: interleaved with the
+/// node accesses they would only wait for each other.
+template <int D>
+struct OffsetBlock {
+  static constexpr int components = D == 3 ? 6 : 2;
+  static constexpr std::size_t parcels = 64;
+  alignas(64) double offset[components][parcels];
+
+  /// Of the parcels from `begin` on, up to `end` and at most as many as fit.
+  void fill(const double* const* shape, std::size_t begin, std::size_t end) {
+    for (std::size_t n = 0; n < parcels && begin + n < end; n += lanes) {
+      if constexpr (D == 3) {
+        const auto o = support_offsets(load_shape_3d(shape, begin + n));
+        const Pack values[6] = {o.first.x,  o.first.y,  o.first.z,
+                                o.second.x, o.second.y, o.second.z};
+        for (int c = 0; c < 6; ++c) put(offset[c] + n, values[c]);
+      } else {
+        const auto o = support_offsets(load_shape_2d(shape, begin + n));
+        put(offset[0] + n, o.x);
+        put(offset[1] + n, o.z);
+      }
+    }
+  }
+};
+
+/// Points of parcels p … p + 7 of a job: from its stored offsets, or else from the shapes by way of
+/// `block`, which has to see the parcels in order from job.begin on. Both give the same bits.
+template <int D, class Job>
+static inline void place_points(const Job& job, std::size_t p, OffsetBlock<D>& block,
+                                Stencil<D>& stencil) {
+  const double* offset[OffsetBlock<D>::components];
+  const std::size_t place = (p - job.begin) % OffsetBlock<D>::parcels;
+  if (job.offset[0] != nullptr) {
+    for (int c = 0; c < OffsetBlock<D>::components; ++c) offset[c] = job.offset[c] + p;
+  } else {
+    if (place == 0) block.fill(job.shape, p, job.end);
+    for (int c = 0; c < OffsetBlock<D>::components; ++c) offset[c] = block.offset[c] + place;
+  }
+  const auto position = [&](int d) { return load(job.position[d] + p); };
+  if constexpr (D == 3)
+    place_points(job.grid, position(0), position(1), position(2),
+                 SupportOffsets3<Pack>{{load(offset[0]), load(offset[1]), load(offset[2])},
+                                       {load(offset[3]), load(offset[4]), load(offset[5])}},
                  stencil);
-}
-template <class Job>
-static inline void place_points(const Job& job, std::size_t p, Stencil<2>& stencil) {
-  const Pack x = load(job.position[0] + p), z = load(job.position[1] + p);
-  if (job.offset[0] == nullptr)
-    place_points(job.grid, x, z, support_offsets(load_shape_2d(job.shape, p)), stencil);
   else
-    place_points(job.grid, x, z,
-                 SupportOffsets2<Pack>{load(job.offset[0] + p), load(job.offset[1] + p)}, stencil);
+    place_points(job.grid, position(0), position(1),
+                 SupportOffsets2<Pack>{load(offset[0]), load(offset[1])}, stencil);
 }
 
 /// Transposes an 8×8 block held in eight packs.

@@ -197,9 +197,10 @@ void advance(double* y, double* increment, std::size_t p, Pack f, double keep, d
 void stage_3d(StageJob<3>& job) {
   using R = FlowRecord<3>;
   Stencil<3> stencil;
+  OffsetBlock<3> block;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = job.end - p;
-    place_points(job, p, stencil);
+    place_points(job, p, block, stencil);
     Pack low[8], high[8];
     interpolate(job.flow, stencil, count, low, high);
     const auto value = [&](int f) { return f < 8 ? low[f] : high[f - 8]; };
@@ -219,9 +220,10 @@ void stage_3d(StageJob<3>& job) {
 void stage_2d(StageJob<2>& job) {
   using R = FlowRecord<2>;
   Stencil<2> stencil;
+  OffsetBlock<2> block;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = job.end - p;
-    place_points(job, p, stencil);
+    place_points(job, p, block, stencil);
     Pack value[8];
     interpolate(job.flow, stencil, count, value);
     for (int d = 0; d < 2; ++d)

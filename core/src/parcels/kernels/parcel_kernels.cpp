@@ -81,8 +81,9 @@ unsigned sort_out_strays(DepositJob<D>& job, const Stencil<D>& stencil, std::siz
 
 void deposit_3d(DepositJob<3>& job) {
   Stencil<3> stencil;
+  OffsetBlock<3> block;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job, p, stencil);
+    place_points(job, p, block, stencil);
     const unsigned inside = sort_out_strays<3>(job, stencil, p);
     Pack record[8];
     record[0] = load(job.volume + p);
@@ -108,8 +109,9 @@ typedef double Record2 __attribute__((vector_size(32)));
 
 void deposit_2d(DepositJob<2>& job) {
   Stencil<2> stencil;
+  OffsetBlock<2> block;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job, p, stencil);
+    place_points(job, p, block, stencil);
     const unsigned inside = sort_out_strays<2>(job, stencil, p);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
@@ -132,8 +134,9 @@ void deposit_2d(DepositJob<2>& job) {
 template <int D>
 void deposit_volume(DepositJob<D>& job) {
   Stencil<D> stencil;
+  OffsetBlock<D> block;
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
-    place_points(job, p, stencil);
+    place_points(job, p, block, stencil);
     const unsigned inside = sort_out_strays<D>(job, stencil, p);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
