@@ -8,19 +8,15 @@
 #include <omp.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
-#include "coupling/operator_entry.hpp"
-#include "host/search.hpp"
 #include "memory_bandwidth.hpp"
-#include "model/operator_physics.hpp"
 #include "model/simulation.hpp"
 #include "parcels/kernels.hpp"
-#include "scene/read_scene.hpp"
+#include "prepared_scene.hpp"
 
 namespace {
 
@@ -104,23 +100,8 @@ void print(const Options& options, const Timing& best, const model::Simulation& 
 
 void run(int argc, char** argv) {
   const Options options = parse(argc, argv);
-  scene::Problems problems;
-  const scene::Scene scene = scene::read_scene(options.scene, options.overrides, problems);
-  coupling::SequenceOptions sequence_options;
-  sequence_options.coupling = scene.coupling;
-  sequence_options.seed = scene.seed;
-  for (const auto& [name, field] : scene.initial.scalars) sequence_options.initial.push_back(name);
-  auto operators = coupling::load_operators(
-      scene, host::default_search_path(std::filesystem::path(options.scene).parent_path()),
-      problems);
-  problems.throw_if_any();
-  coupling::OperatorSequence sequence(std::move(operators), sequence_options);
-  model::OperatorPhysics physics(sequence);
-  const auto simulation = model::make_simulation(scene, sequence.required_scalars(), physics);
-  sequence.bind(simulation->store(), simulation->plugin_grid());
-  simulation->initialise(scene);
-  sequence.init({0, 0.0, 0.0});
-  simulation->evaluate();
+  bench::PreparedScene prepared(options.scene, options.overrides);
+  model::Simulation* const simulation = &prepared.simulation();
   for (int n = 0; n < options.warm_up; ++n) take_step(*simulation);
 
   Timing best;
