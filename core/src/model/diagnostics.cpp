@@ -109,6 +109,7 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
     for (const auto& [name, units, text] : exact_.back().outputs())
       entries.push_back(add(name, units, text));
   }
+  add_gridded_measures(scene, simulation);
   for (const scene::HistogramControl& control : scene.diagnostics.histograms) {
     histograms_.emplace_back(control, simulation);
     auto& entries = histogram_entries_.emplace_back();
@@ -116,6 +117,39 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
       entries.push_back(add(name, units, text));
   }
   values_.assign(list_.size(), 0.0);
+}
+
+void Diagnostics::add_gridded_measures(const scene::Scene& scene, const Simulation& simulation) {
+  const scene::DiagnosticControl& control = scene.diagnostics;
+  if (control.modes.empty() && control.fronts.empty() && control.mirrors.empty()) return;
+  field_ = nodes_of(simulation);
+  for (const scene::ModeControl& mode : control.modes) {
+    modes_.push_back({Mode(mode, scene, field_), {}});
+    for (const auto& [name, units, text] : modes_.back().mode.outputs())
+      modes_.back().entries.push_back(add(name, units, text));
+  }
+  for (const scene::FrontControl& front : control.fronts)
+    fronts_.emplace_back(front, add(front.name + "_position", "m",
+                                    "largest distance in x from the centre of the domain"));
+  for (const scene::MirrorControl& mirror : control.mirrors)
+    mirrors_.emplace_back(mirror, add(mirror.variable + "_asymmetry", "1",
+                                      "largest difference from the mirror image, relative"));
+}
+
+void Diagnostics::observe_gridded_measures(Simulation& simulation) {
+  for (const ModeEntries& m : modes_) {
+    simulation.grid_field(m.mode.variable(), field_.values);
+    const std::vector<double> found = m.mode.measure(field_);
+    for (std::size_t k = 0; k < found.size(); ++k) set(m.entries[k], found[k]);
+  }
+  for (const auto& [front, entry] : fronts_) {
+    simulation.grid_field(front.variable, field_.values);
+    set(entry, front_position(field_, front));
+  }
+  for (const auto& [mirror, entry] : mirrors_) {
+    simulation.grid_field(mirror.variable, field_.values);
+    set(entry, asymmetry(field_, mirror.parity == scene::MirrorControl::Parity::odd));
+  }
 }
 
 void Diagnostics::observe_state(Simulation& simulation) {
@@ -134,6 +168,7 @@ void Diagnostics::observe_state(Simulation& simulation) {
     const std::vector<double> found = exact_[i].compare(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(exact_entries_[i][k], found[k]);
   }
+  observe_gridded_measures(simulation);
   for (std::size_t i = 0; i < histograms_.size(); ++i) {
     const std::vector<double> found = histograms_[i].measure(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(histogram_entries_[i][k], found[k]);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/exact_comparison.hpp"
+#include "model/gridded_measures.hpp"
 #include "model/histogram.hpp"
 #include "model/potential_energy.hpp"
 #include "model/simulation.hpp"
@@ -42,7 +43,13 @@ class Diagnostics {
   void observe_parcels(Simulation& simulation);
   void observe_scalars(const Simulation& simulation);
   void observe_cloud(const Simulation& simulation);
+  void add_gridded_measures(const scene::Scene& scene, const Simulation& simulation);
+  void observe_gridded_measures(Simulation& simulation);
 
+  struct ModeEntries {
+    Mode mode;
+    std::vector<int> entries;
+  };
   struct ScalarEntries {
     int scalar, mean, low, high;
   };
@@ -52,6 +59,10 @@ class Diagnostics {
   PotentialEnergy potential_energy_;
   std::vector<ExactComparison> exact_;
   std::vector<std::vector<int>> exact_entries_;
+  std::vector<ModeEntries> modes_;
+  std::vector<std::pair<scene::FrontControl, int>> fronts_;
+  std::vector<std::pair<scene::MirrorControl, int>> mirrors_;
+  NodeField field_;
   std::vector<Histogram> histograms_;
   std::vector<std::vector<int>> histogram_entries_;
   std::vector<ScalarEntries> scalars_;

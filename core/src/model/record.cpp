@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
@@ -27,19 +28,49 @@ double Record::at(std::size_t diagnostic, double time) const {
 
 const std::vector<std::string>& known_statistics() {
   static const std::vector<std::string> words = {
-      "initial", "final", "min", "max", "mean", "relative_change", "first_time_above"};
+      "initial", "final",           "min",         "max",
+      "mean",    "relative_change", "growth_rate", "first_time_above"};
   return words;
 }
 
+namespace {
+
+std::optional<double> growth_rate(std::span<const double> times, std::span<const double> values) {
+  if (times.size() < 3) return std::nullopt;
+  double mean_time = 0, mean_log = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (values[i] == 0) return std::nullopt;
+    mean_time += times[i];
+    mean_log += std::log(std::abs(values[i]));
+  }
+  const auto n = static_cast<double>(times.size());
+  mean_time /= n;
+  mean_log /= n;
+  double covariance = 0, variance = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i] - mean_time;
+    covariance += t * (std::log(std::abs(values[i])) - mean_log);
+    variance += t * t;
+  }
+  if (!(variance > 0)) return std::nullopt;
+  return covariance / variance;
+}
+
+}  // namespace
+
 std::optional<double> Record::statistic(std::size_t diagnostic, const std::string& name,
-                                        std::optional<double> time) const {
+                                        std::optional<double> time,
+                                        std::optional<double> from) const {
   if (times_.empty()) return std::nullopt;
   const std::vector<double>& values = series_[diagnostic];
   const double end = time ? at(diagnostic, *time) : values.back();
   const auto last = time ? std::upper_bound(times_.begin(), times_.end(), *time) : times_.end();
-  const auto count = std::max<std::ptrdiff_t>(1, last - times_.begin());
-  const auto begin = values.begin(), stop = values.begin() + count;
-  if (name == "initial") return values.front();
+  const auto first = from ? std::lower_bound(times_.begin(), times_.end(), *from) : times_.begin();
+  const auto skipped = first - times_.begin();
+  const auto count = std::max<std::ptrdiff_t>(from ? 0 : 1, last - first);
+  if (count == 0) return std::nullopt;
+  const auto begin = values.begin() + skipped, stop = begin + count;
+  if (name == "initial") return *begin;
   if (name == "final") return end;
   if (name == "min") return *std::min_element(begin, stop);
   if (name == "max") return *std::max_element(begin, stop);
@@ -48,11 +79,15 @@ std::optional<double> Record::statistic(std::size_t diagnostic, const std::strin
     for (auto v = begin; v != stop; ++v) sum += *v;
     return sum / static_cast<double>(count);
   }
-  if (name == "relative_change") return (end - values.front()) / std::abs(values.front());
+  if (name == "relative_change") return (end - *begin) / std::abs(*begin);
+  if (name == "growth_rate") {
+    const auto at = static_cast<std::size_t>(skipped), n = static_cast<std::size_t>(count);
+    return growth_rate(std::span(times_).subspan(at, n), std::span(values).subspan(at, n));
+  }
   if (name == "first_time_above") {
     // Time at which the series first exceeds zero: when a first cloud appears.
-    for (std::ptrdiff_t i = 0; i < count; ++i)
-      if (values[static_cast<std::size_t>(i)] > 0) return times_[static_cast<std::size_t>(i)];
+    for (auto v = begin; v != stop; ++v)
+      if (*v > 0) return times_[static_cast<std::size_t>(v - values.begin())];
     return std::nullopt;
   }
   return std::nullopt;
@@ -104,6 +139,7 @@ std::vector<output::ExpectSummary> judge(const std::vector<scene::Expectation>& 
     r.diagnostic = e.diagnostic;
     r.statistic = e.statistic;
     r.at = e.at;
+    r.from = e.from;
     r.low = e.low;
     r.high = e.high;
     r.source = e.source;
@@ -111,8 +147,8 @@ std::vector<output::ExpectSummary> judge(const std::vector<scene::Expectation>& 
     const auto found = std::find_if(
         list.begin(), list.end(), [&](const DiagnosticInfo& d) { return d.name == e.diagnostic; });
     if (found != list.end()) {
-      const auto value =
-          record.statistic(static_cast<std::size_t>(found - list.begin()), e.statistic, e.at);
+      const auto value = record.statistic(static_cast<std::size_t>(found - list.begin()),
+                                          e.statistic, e.at, e.from);
       if (value) r.value = *value;
     }
     // Comparisons with a value that is not available are false: nothing unmeasured passes.

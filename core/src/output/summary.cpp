@@ -104,6 +104,7 @@ Json expect_of(const Summary& summary) {
         {{"diagnostic", one.diagnostic},
          {"statistic", one.statistic},
          {"at_s", number_or_null(one.at)},
+         {"from_s", number_or_null(one.from)},
          {"value", number_or_null(one.value)},
          {"bound", {{"low", number_or_null(one.low)}, {"high", number_or_null(one.high)}}},
          {"passed", one.passed},

@@ -54,7 +54,8 @@ struct ExpectSummary {
   double value = not_available;
   std::optional<double> low, high;  // inclusive bounds
   bool passed = false;
-  std::string source;  // where the bound comes from
+  std::string source;               // where the bound comes from
+  std::optional<double> from = {};  // s, where the statistic begins; nothing: at the start
 };
 
 struct OutputSummary {

@@ -63,6 +63,79 @@ const Table& exact_table() {
   return table;
 }
 
+void check_mode(Reader& reader, const Node& node, void* object) {
+  static_cast<ModeControl*>(object)->where = node.where;
+  for (const char* key : {"cosine", "sine"}) {
+    const Entry* formula = node.find(key);
+    if (formula != nullptr && formula->value.kind == Node::Kind::scalar)
+      reader.formula(formula->value, {"x", "y", "z"});
+  }
+}
+
+const Table& mode_table() {
+  static const Table table = {
+      .path = "diagnostics.modes",
+      .doc =
+          "Parts of gridded fields with a given shape; each gives <name>_amplitude and, with a "
+          "sine, <name>_phase.",
+      .keys =
+          {value("name", &ModeControl::name, "1", "Prefix of the diagnostics.").must(),
+           value("variable", &ModeControl::variable, "1", "Gridded field that is measured.").must(),
+           value("cosine", &ModeControl::cosine, "1",
+                 "Shape of the mode: a formula of x, y, z (m) and constants.")
+               .must(),
+           value("sine", &ModeControl::sine, "1",
+                 "Shape of the mode a quarter wavelength further; without it the mode stands.")},
+      .other = {},
+      .finish = check_mode,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& front_table() {
+  static const Table table = {
+      .path = "diagnostics.fronts",
+      .doc =
+          "Largest distances in x from the domain's centre at which a gridded field is beyond a "
+          "threshold; each gives <name>_position.",
+      .keys = {value("name", &FrontControl::name, "1", "Prefix of the diagnostic.").must(),
+               value("variable", &FrontControl::variable, "1", "Gridded field that is measured.")
+                   .must(),
+               value("threshold", &FrontControl::threshold, "1",
+                     "Threshold, in the field's SI "
+                     "unit.")
+                   .must(),
+               choice("side", &FrontControl::side, {"below", "above"},
+                      "On which side of the threshold the field is within the front."),
+               value("height", &FrontControl::height, "m", "Height at which the front is sought.")
+                   .otherwise("the ground")},
+      .other = {},
+      .finish = [](Reader&, const Node& node,
+                   void* object) { static_cast<FrontControl*>(object)->where = node.where; },
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& mirror_table() {
+  static const Table table = {
+      .path = "diagnostics.mirrors",
+      .doc =
+          "Gridded fields that should be their own mirror image at the domain's centre in x; each "
+          "gives <variable>_asymmetry, the largest difference over the largest magnitude.",
+      .keys = {value("variable", &MirrorControl::variable, "1", "Gridded field that is measured.")
+                   .must(),
+               choice("parity", &MirrorControl::parity, {"even", "odd"},
+                      "Whether the mirror image equals the field or its negative.")},
+      .other = {},
+      .finish = [](Reader&, const Node& node,
+                   void* object) { static_cast<MirrorControl*>(object)->where = node.where; },
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
 const Table& reference_table() {
   using Reference = HistogramControl::Reference;
   static const Table table = {
@@ -140,6 +213,9 @@ const Table& diagnostics_table() {
                      "Cloud liquid water mass fraction above which air counts as cloud.")
                    .at_least(0),
                sections("exact", &DiagnosticControl::exact, exact_table()),
+               sections("modes", &DiagnosticControl::modes, mode_table()),
+               sections("fronts", &DiagnosticControl::fronts, front_table()),
+               sections("mirrors", &DiagnosticControl::mirrors, mirror_table()),
                sections("histograms", &DiagnosticControl::histograms, histogram_table())},
       .other = {},
       .finish = {},

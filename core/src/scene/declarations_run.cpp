@@ -301,11 +301,14 @@ const Table& expectation_table() {
       .keys =
           {value("diagnostic", &Expectation::diagnostic, "1", "Name of a diagnostic.").must(),
            [] {
-             Key key = value("statistic", &Expectation::statistic, "1",
-                             "Which number of its series: the value at the start or end, an "
-                             "extremum or mean over the run, or final over initial minus one.");
+             Key key = value(
+                 "statistic", &Expectation::statistic, "1",
+                 "Which number of its series: the value at the start or end, an "
+                 "extremum or mean over the run, final over initial minus one, or the rate at "
+                 "which the logarithm of its magnitude grows (s-1, least squares).");
              key.type = KeyType::custom;
-             key.choices = {"initial", "final", "min", "max", "mean", "relative_change"};
+             key.choices = {"initial", "final",           "min",        "max",
+                            "mean",    "relative_change", "growth_rate"};
              key.default_doc = "final";
              key.read = [choices = key.choices](Reader& reader, const Entry& entry, void* object) {
                Key words;
@@ -323,6 +326,9 @@ const Table& expectation_table() {
              return key;
            }(),
            value("at", &Expectation::at, "s", "Take the value at this simulated time.").at_least(0),
+           value("from", &Expectation::from, "s",
+                 "Statistics over the run begin at this simulated time.")
+               .at_least(0),
            value("at_least", &Expectation::low, "1", "Lowest value allowed, in SI."),
            value("at_most", &Expectation::high, "1", "Highest value allowed, in SI."),
            between_key(),

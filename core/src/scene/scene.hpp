@@ -209,16 +209,47 @@ struct HistogramControl {
   Location where;
 };
 
+/// Part of a gridded field with a given shape. Gives `<name>_amplitude` and, with a sine,
+/// `<name>_phase` (rad).
+struct ModeControl {
+  std::string name, variable;
+  std::string cosine, sine;  // of x, y, z and the scene's constants; sine may be empty
+  Location where;
+};
+
+/// How far in x from the domain's centre a gridded field is beyond a threshold at one height.
+/// Gives `<name>_position` (m).
+struct FrontControl {
+  enum class Side { below, above };
+  std::string name, variable;
+  double threshold = 0;  // in the field's SI unit
+  Side side = Side::below;
+  std::optional<double> height;  // m; the ground when not given
+  Location where;
+};
+
+/// A gridded field against its mirror image in x. Gives `<variable>_asymmetry` (1).
+struct MirrorControl {
+  enum class Parity { even, odd };
+  std::string variable;
+  Parity parity = Parity::even;
+  Location where;
+};
+
 struct DiagnosticControl {
   double cloud_threshold = 1e-6;  // 1; liquid water mass fraction from which air counts as cloudy
   std::vector<ExactSolution> exact;
+  std::vector<ModeControl> modes;
+  std::vector<FrontControl> fronts;
+  std::vector<MirrorControl> mirrors;
   std::vector<HistogramControl> histograms;
 };
 
 struct Expectation {
-  std::string diagnostic;    // name in summary.json:diagnostics
-  std::string statistic;     // initial final min max mean relative_change …
-  std::optional<double> at;  // s; the series value at this time instead of the end
+  std::string diagnostic;      // name in summary.json:diagnostics
+  std::string statistic;       // initial final min max mean relative_change …
+  std::optional<double> at;    // s; the series value at this time instead of the end
+  std::optional<double> from;  // s; statistics begin at this time instead of the start
   std::optional<double> low, high;
   std::string source;  // where the bound comes from
   Location where;

@@ -63,8 +63,11 @@ std::string describe_bounds(const output::ExpectSummary& expectation) {
 }
 
 std::string line_of(const output::ExpectSummary& expectation) {
-  std::string what = expectation.diagnostic + " ";
-  what += expectation.at ? fmt::format("at {:.6g} s", *expectation.at) : expectation.statistic;
+  std::string what = expectation.diagnostic;
+  if (!expectation.at || expectation.statistic != "final") what += " " + expectation.statistic;
+  if (expectation.from) what += fmt::format(" from {:.6g} s", *expectation.from);
+  if (expectation.at)
+    what += fmt::format(" {} {:.6g} s", expectation.from ? "to" : "at", *expectation.at);
   std::string line = fmt::format("  {}  {:<44} {:>13.6g}  {}", expectation.passed ? "pass" : "MISS",
                                  what, expectation.value, describe_bounds(expectation));
   if (!expectation.source.empty()) line += "  (" + expectation.source + ")";

@@ -37,6 +37,37 @@ TEST(Record, AnEarlierTimeIsInterpolatedAndEndsTheStatistics) {
   EXPECT_FALSE(record.statistic(1, "first_time_above", 20.0).has_value());
 }
 
+TEST(Record, GrowthRateIsTheSlopeOfTheLogarithm) {
+  Record record({{"wave", "m s-1", "", false}});
+  // Another rate before t = 2, which the fit must not see; the sign may be either.
+  for (int i = 0; i <= 40; ++i) {
+    const double t = 0.1 * i;
+    record.append(t, {t < 2 ? 1.0 : -std::exp(0.3 * t)});
+  }
+  EXPECT_NEAR(*record.statistic(0, "growth_rate", {}, 2.0), 0.3, 1e-13);
+  EXPECT_NEAR(*record.statistic(0, "growth_rate", 3.0, 2.0), 0.3, 1e-13);
+  EXPECT_NEAR(*record.statistic(0, "growth_rate", 1.5, {}), 0.0, 1e-13);
+}
+
+TEST(Record, GrowthRateNeedsThreeRecordsOtherThanZero) {
+  Record record({{"wave", "m s-1", "", false}});
+  record.append(0, {0.0});
+  record.append(1, {1.0});
+  record.append(2, {2.0});
+  EXPECT_FALSE(record.statistic(0, "growth_rate", {}, {}).has_value());
+  EXPECT_FALSE(record.statistic(0, "growth_rate", {}, 1.0).has_value());
+  record.append(3, {4.0});
+  EXPECT_NEAR(*record.statistic(0, "growth_rate", {}, 1.0), std::log(2.0), 1e-14);
+}
+
+TEST(Record, StatisticsBeginWhereTheyAreAskedTo) {
+  const Record record = sample();
+  EXPECT_EQ(record.statistic(0, "max", 20.0, 5.0), 1.0);
+  EXPECT_EQ(record.statistic(0, "initial", {}, 5.0), 1.0);
+  EXPECT_EQ(record.statistic(0, "relative_change", {}, 5.0), 2.0);
+  EXPECT_FALSE(record.statistic(0, "max", {}, 31.0).has_value());
+}
+
 TEST(Record, SurvivesACheckpointAndForgetsWhatIsRepeated) {
   output::NamedData data;
   sample().save(data);
