@@ -76,7 +76,29 @@ struct Timing {
   }
 };
 
-void print(const Options& options, const Timing& best, const model::Simulation& simulation) {
+/// Memory traffic that the two passes over the parcels cannot avoid, against the triad's. A deposit
+/// reads position, volume, shape, vorticity and buoyancy; a stage reads and writes position,
+/// vorticity, shape and their increments (3, 3 and the 8 of the velocity gradient). Records of the
+/// mesh are moved once per pass: the deposited ones read and written, those of the flow read.
+void print_traffic(const Timing& best, const model::Simulation& simulation, int stages,
+                   double triad) {
+  const auto nodes = static_cast<double>(simulation.node_count());
+  const double per_node = nodes / static_cast<double>(simulation.store().size());
+  const double deposit = 8.0 * ((3 + 1 + 6 + 3 + 1) + 2 * mesh::DepositRecord<3>::width * per_node);
+  const double stage =
+      8.0 * (2 * (3 + 3 + 6) + 2 * (3 + 3 + 8) + mesh::FlowRecord<3>::width * per_node);
+  const auto line = [&](const char* name, Phase phase, double bytes) {
+    const double rate = bytes * stages * best.parcel_steps / best.phases[phase].seconds * 1e-9;
+    fmt::print(
+        "  {:<12} {:>4.0f} bytes per parcel and stage: {:>5.1f} GB/s, {:.0f} % of the triad\n",
+        name, bytes, rate, 100 * rate / triad);
+  };
+  line("deposit", Phase::deposit, deposit);
+  line("interpolate", Phase::interpolate, stage);
+}
+
+void print(const Options& options, const Timing& best, const model::Simulation& simulation,
+           int stages) {
   const double scale = 1e9 / best.parcel_steps;
   fmt::print("{}: {:.0f} parcels, {} threads, {}\n", options.scene,
              best.parcel_steps / options.steps, omp_get_max_threads(),
@@ -92,10 +114,12 @@ void print(const Options& options, const Timing& best, const model::Simulation& 
   fmt::print(
       "  interpolate holds the stage's update of position, vorticity and shape, which runs in\n"
       "  the same pass; stage_update is what follows the last stage (walls, net vorticity).\n");
+  const double triad = bench::triad_bandwidth(8);
   fmt::print("  memory: {:.0f} bytes per parcel; triad bandwidth {:.1f} GB/s\n",
              static_cast<double>(simulation.allocated_bytes()) /
                  static_cast<double>(simulation.store().size()),
-             bench::triad_bandwidth(8));
+             triad);
+  if (simulation.dimension() == 3) print_traffic(best, simulation, stages, triad);
 }
 
 void run(int argc, char** argv) {
@@ -113,7 +137,8 @@ void run(int argc, char** argv) {
     if (r == 0 || timing.seconds() / timing.parcel_steps < best.seconds() / best.parcel_steps)
       best = timing;
   }
-  print(options, best, *simulation);
+  print(options, best, *simulation,
+        prepared.scene().time.scheme == scene::RungeKutta::order4_stages5 ? 5 : 3);
 }
 
 }  // namespace
