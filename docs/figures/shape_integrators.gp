@@ -19,7 +19,7 @@ do for [terminal in "svg png"] {
   set title "relative error of B"
   plot for [i=1:5] data index i-1 using 1:2 with linespoints pt 7 ps 0.6 lw 2 lc rgb colour[i] \
          title word(names, i), \
-       0.002*x**3 dt 2 lc rgb "#999999" title "slopes 3 and 4", 0.00002*x**4 dt 2 lc rgb "#999999" notitle
+       0.01*x**3 dt 2 lc rgb "#999999" title "slopes 3 and 4", 0.0002*x**4 dt 2 lc rgb "#999999" notitle
   set title "error of det B (volume squared)"
   set yrange [1e-12:1e5]
   unset key
