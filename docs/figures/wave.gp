@@ -25,15 +25,15 @@ do for [terminal in "svg png"] {
   set grid lc rgb "#dddddd"
   set xlabel "processor time, s"
   set xrange [2:2000]
-  set key bottom right samplen 2 spacing 0.9 font ",10"
+  set key bottom left samplen 2 spacing 0.9 font ",10"
   set title "r.m.s. error of the vorticity after two periods"
-  set yrange [5e-4:1]
+  set yrange [1e-4:1]
   plot for [i=1:4] pick(word(cases, i)) using 5:7 with linespoints pt 7 ps 0.7 lw 2 \
          lc rgb colour[i] title word(names, i), \
        $epic_rk4 using 1:2 with points pt 9 ps 1.2 lc rgb "#a6420a" title "EPIC, RK4", \
        $epic_rk3 using 1:2 with points pt 11 ps 1.2 lc rgb "#d95f02" title "EPIC, RK3"
   set title "mean deviation of the energy"
-  set yrange [1e-5:1e-1]
+  set yrange [1e-6:1e-1]
   plot for [i=1:4] pick(word(cases, i)) using 5:9 with linespoints pt 7 ps 0.7 lw 2 \
          lc rgb colour[i] title word(names, i), \
        $epic_rk4 using 1:3 with points pt 9 ps 1.2 lc rgb "#a6420a" title "EPIC, RK4", \
