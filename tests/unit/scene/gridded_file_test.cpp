@@ -41,7 +41,9 @@ class GriddedFile : public testing::Test {
  protected:
   GriddedFile() {
     field_.form = FieldDescription::Form::file;
-    field_.path = (fs::path(testing::TempDir()) / "gridded_file_test.h5").string();
+    // Tests run side by side, each in a process of its own.
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    field_.path = (fs::path(testing::TempDir()) / (test + ".h5")).string();
     field_.variable = "b";
     field_.units = "m s-2";
     field_.where = {"scene.yaml", 3, 7};

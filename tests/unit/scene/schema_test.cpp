@@ -20,7 +20,9 @@ const fs::path root = PILEUS_SOURCE_DIR;
 /// Runs the JSON Schema validator over scenes: 0 when every one is judged as expected.
 int validate(const std::string& schema, const std::string& expectation,
              const std::vector<fs::path>& paths) {
-  const fs::path file = fs::path(testing::TempDir()) / "printed.schema.json";
+  // Tests run side by side, each in a process of its own.
+  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const fs::path file = fs::path(testing::TempDir()) / (test + ".schema.json");
   std::ofstream(file) << schema;
   std::string command = "/usr/bin/python3 '" + (root / "tests/schema/validate.py").string() + "' " +
                         expectation + " '" + file.string() + "'";
