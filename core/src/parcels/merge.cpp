@@ -27,6 +27,34 @@ void separation(const mesh::Grid<D>& grid, const Store& store, std::uint32_t fro
   for (int a = 0; a < D - 1; ++a) d[a] = minimum_image(d[a], grid.extent[a]);
 }
 
+/// The factor that gives the ellipse or ellipsoid of a shape matrix the wanted volume.
+template <int D>
+double scale_to_volume(const double* shape, double volume) {
+  if constexpr (D == 3) {
+    const double abc = three_over_four_pi * volume;
+    return std::cbrt(abc * abc /
+                     baseline::determinant(baseline::Symmetric3<double>{
+                         shape[0], shape[1], shape[2], shape[3], shape[4], shape[5]}));
+  } else {
+    const double ab = one_over_pi * volume;
+    return ab / std::sqrt(baseline::determinant(
+                    baseline::Symmetric2<double>{shape[0], shape[1], shape[2]}));
+  }
+}
+
+/// The largest parcel of a cluster passes its identity on; of equals, the one with the smaller.
+template <class Source>
+std::uint64_t identity_of_merged(const Store& store, const Source* begin, const Source* end) {
+  const double* volume = store.volume();
+  const std::uint64_t* uid = store.uid();
+  std::uint32_t largest = begin->receiver;
+  for (const Source* s = begin; s != end; ++s)
+    if (volume[s->source] > volume[largest] ||
+        (volume[s->source] == volume[largest] && uid[s->source] < uid[largest]))
+      largest = s->source;
+  return uid[largest];
+}
+
 }  // namespace
 
 template <int D>
@@ -145,14 +173,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   const std::uint32_t r = begin->receiver;
   const double* volume = store.volume();
   double total = volume[r];
-  std::uint32_t largest = r;
-  for (const Source* s = begin; s != end; ++s) {
-    total += volume[s->source];
-    const std::uint64_t* uid = store.uid();
-    if (volume[s->source] > volume[largest] ||
-        (volume[s->source] == volume[largest] && uid[s->source] < uid[largest]))
-      largest = s->source;
-  }
+  for (const Source* s = begin; s != end; ++s) total += volume[s->source];
   const double inverse = 1.0 / total;
 
   double centroid[D] = {};  // relative to the receiver
@@ -173,17 +194,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   };
   add_moment(r);
   for (const Source* s = begin; s != end; ++s) add_moment(s->source);
-  double scale;
-  if constexpr (D == 3) {
-    const double abc = three_over_four_pi * total;
-    scale = std::cbrt(abc * abc /
-                      baseline::determinant(baseline::Symmetric3<double>{
-                          shape[0], shape[1], shape[2], shape[3], shape[4], shape[5]}));
-  } else {
-    const double ab = one_over_pi * total;
-    scale = ab / std::sqrt(baseline::determinant(
-                     baseline::Symmetric2<double>{shape[0], shape[1], shape[2]}));
-  }
+  const double scale = scale_to_volume<D>(shape, total);
 
   const auto merge_mean = [&](double* value) {
     double sum = volume[r] * value[r], low = value[r], high = value[r];
@@ -209,7 +220,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
     x -= grid_.extent[a] * std::floor((x - grid_.lower[a]) / grid_.extent[a]);
   }
   for (int c = 0; c < shape_components; ++c) store.shape(c)[r] = scale * shape[c];
-  store.uid()[r] = store.uid()[largest];
+  store.uid()[r] = identity_of_merged(store, begin, end);
   store.volume()[r] = total;
 }
 

@@ -230,8 +230,8 @@ TEST(MergeProperty, TiesOnLatticesAreResolved) {
   for (const std::size_t p : left) EXPECT_GT(store.volume()[p], 1.5 / 4096);
 }
 
-// Many parcels at one point: everything is at distance zero of everything, so all ties are broken by
-// identity and one parcel is left. The search is quadratic in the parcels of a cell.
+// Many parcels at one point: everything is at distance zero of everything, so all ties are broken
+// by identity and one parcel is left. The search is quadratic in the parcels of a cell.
 TEST(MergeProperty, AStormAtOnePointTerminates) {
   const mesh::Grid<3> grid = unit_box<3>(16);
   constexpr std::size_t count = 6000;
