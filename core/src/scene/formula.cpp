@@ -79,7 +79,7 @@ std::size_t find_assignment(const std::string& text) {
 }
 
 FormulaProblem explain(const mu::ParserError& error, const std::string& text,
-                       std::vector<std::string> names) {
+                       const std::vector<std::string>& names) {
   const auto position =
       std::min(static_cast<std::size_t>(std::max(0, int(error.GetPos()))), text.size());
   const std::string word = name_at(text, position);

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// A cell of a Markdown table.
-std::string cell(std::string text) {
+std::string cell(const std::string& text) {
   std::string result;
   for (const char c : text) {
     if (c == '|') result += '\\';
@@ -57,13 +57,10 @@ void write_section(const std::string& path, const Json& schema, std::string& pag
   for (const auto& [key, value] : schema.at("properties").items()) {
     if (is_section(value)) {
       inner.emplace_back(path + "." + key, &value);
-      rows += fmt::format("| `{}` | A section: [{}.{}](#{}). |\n", key, path, key,
-                          // Headings lose everything but letters, digits, _ and - in anchors.
-                          [&] {
-                            std::string anchor = path + key;
-                            std::erase(anchor, '.');
-                            return anchor;
-                          }());
+      // Headings lose everything but letters, digits, _ and - in anchors.
+      std::string anchor = path + key;
+      std::erase(anchor, '.');
+      rows += fmt::format("| `{}` | A section: [{}.{}](#{}). |\n", key, path, key, anchor);
     } else {
       rows += row(key, value);
     }

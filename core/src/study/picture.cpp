@@ -101,7 +101,8 @@ struct Layout {
   }
   double left(int panel) const { return left_margin + panel % across * (width + gap_across); }
   double bottom(int panel) const {
-    return bottom_margin + (up - 1 - panel / across) * (height + gap_up);
+    const int row = panel / across;
+    return bottom_margin + (up - 1 - row) * (height + gap_up);
   }
   double panels_height() const { return up * height + (up - 1) * gap_up; }
   PictureSize size() const {
