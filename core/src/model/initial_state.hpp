@@ -9,8 +9,8 @@
 
 namespace pileus::model {
 
-/// Gives the placed parcels of the store the scene's fields at their centres: exactly, not through the
-/// mesh. A velocity becomes vorticity by differences of the sixth order (step Δ/64: truncation
+/// Gives the placed parcels of the store the scene's fields at their centres: exactly, not through
+/// the mesh. A velocity becomes vorticity by differences of the sixth order (step Δ/64: truncation
 /// below 1e-10 of a field that the mesh resolves) and, together with `mean_wind`, gives the
 /// domain-mean wind. Scalars the scene does not set get their declared initial value.
 template <int D>
