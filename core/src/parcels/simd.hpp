@@ -20,6 +20,7 @@ inline constexpr int lanes = 8;
 typedef double Pack __attribute__((vector_size(64)));
 typedef long Mask __attribute__((vector_size(64)));  // all ones where true
 typedef std::int32_t IntPack __attribute__((vector_size(32)));
+typedef std::uint32_t UnsignedPack __attribute__((vector_size(32)));
 /// A Pack in memory that need not be aligned.
 typedef double UnalignedPack __attribute__((vector_size(64), aligned(8), may_alias));
 
@@ -85,7 +86,9 @@ static inline IntPack floor_to_int(Pack x) {
   const IntPack truncated = __builtin_convertvector(x, IntPack);
   const Pack back = __builtin_convertvector(truncated, Pack);
   const IntPack one_too_high = __builtin_convertvector(back > x, IntPack);  // −1 where true
-  return truncated + one_too_high;
+  // Modulo 2^32: a value beyond the range gives some integer, not undefined behaviour.
+  return reinterpret_cast<IntPack>(reinterpret_cast<UnsignedPack>(truncated) +
+                                   reinterpret_cast<UnsignedPack>(one_too_high));
 }
 static inline Pack to_pack(IntPack i) {
   return __builtin_convertvector(i, Pack);
