@@ -63,7 +63,7 @@ class Restart(ProgramTest):
         """Random times after which to kill, short against the run so that it takes several."""
         chance = random.Random(seed)
         for _ in range(MOST_KILLS):
-            yield lambda process, folder: time.sleep(chance.uniform(0.1, 0.5) * took)
+            yield lambda process, folder: time.sleep(chance.uniform(0.05, 0.25) * took)
 
     def test_thermal_killed_once_at_random(self):
         whole, took = self.timed(THERMAL, BUSY_THERMAL)
