@@ -9,6 +9,7 @@ namespace pileus {
 
 enum class Phase : int {
   deposit,
+  compensation,  // of the window of deposit and interpolation
   inversion,
   tendency,
   interpolate,
@@ -25,8 +26,8 @@ enum class Phase : int {
 };
 
 inline constexpr std::array<std::string_view, static_cast<int>(Phase::count_)> phase_names = {
-    "deposit", "inversion", "tendency", "interpolate", "stage_update", "closure", "operators",
-    "sort",    "merge",     "split",    "correction",  "diagnostics",  "output"};
+    "deposit",   "compensation", "inversion", "tendency", "interpolate", "stage_update", "closure",
+    "operators", "sort",         "merge",     "split",    "correction",  "diagnostics",  "output"};
 
 /// Seconds and number of entries of every phase.
 class PhaseTimes {

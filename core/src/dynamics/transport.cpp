@@ -120,7 +120,7 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
     empty_nodes_ = deposit_.means(store, tile_begin, values, reference, deposited_.data());
   }
   {
-    const PhaseScope scope(times, Phase::inversion);
+    const PhaseScope scope(times, Phase::compensation);
     sharpen_deposited_.apply(deposited_.data());
   }
   solver_.solve(deposited_.data(), wind.velocity, flow_.data(), &summary_, times);
@@ -187,7 +187,7 @@ void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, d
 template <int D>
 void Transport<D>::sharpen_flow(PhaseTimes& times) {
   if (flow_is_sharp_) return;
-  const PhaseScope scope(times, Phase::inversion);
+  const PhaseScope scope(times, Phase::compensation);
   sharpen_flow_.apply(flow_.data());
   flow_is_sharp_ = true;
 }

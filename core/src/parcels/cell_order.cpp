@@ -1,6 +1,7 @@
 #include "parcels/cell_order.hpp"
 
 #include "base/parallel.hpp"
+#include "parcels/margin.hpp"
 
 namespace pileus::parcels {
 
@@ -11,8 +12,8 @@ CellOrder<D>::CellOrder(const mesh::Grid<D>& grid, const Tiling<D>& tiling)
 template <int D>
 void CellOrder<D>::sort(const Store& store) {
   const std::size_t count = store.size();
-  key_.resize(count);
-  order_.resize(count);
+  resize_with_margin(key_, count);
+  resize_with_margin(order_, count);
   const double* x = store.position(0);
   const double* y = D == 3 ? store.position(1) : nullptr;
   const double* z = store.position(D - 1);

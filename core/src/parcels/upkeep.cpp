@@ -2,6 +2,7 @@
 
 #include "base/parallel.hpp"
 #include "parcels/kernels.hpp"
+#include "parcels/margin.hpp"
 
 namespace pileus::parcels {
 
@@ -63,7 +64,7 @@ void Upkeep<D>::reorder(Store& store, SupportOffsets<D>& offsets, PhaseTimes& ti
 template <int D>
 void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
   const std::size_t count = store.size();
-  splits_.resize(count);
+  resize_with_margin(splits_, count);
   if (scratch.capacity() < count + 8) scratch.resize(count);
   double* length = scratch.scratch(0);
   double* ratio = scratch.scratch(1);
