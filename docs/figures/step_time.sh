@@ -25,6 +25,6 @@ for instructions in avx2 baseline; do
 done
 time_step wave_uncompensated 1 $wave --set numerics.window_compensation=0
 time_step wave_direct_shapes 1 $wave --set numerics.shape_integrator=runge_kutta
-time_step wave_uncorrected 1 $wave --set parcels.correction.iterations=0
+time_step wave_uncorrected 1 $wave --set parcels.correction_iterations=0
 time_step wave_rk3 1 $wave --set time.scheme=rk3
 cat "$data"

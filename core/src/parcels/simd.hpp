@@ -17,47 +17,27 @@ namespace pileus::PILEUS_ISA {
 
 inline constexpr int lanes = 8;
 
-typedef double Pack __attribute__((vector_size(64)));
-typedef long Mask __attribute__((vector_size(64)));  // all ones where true
 typedef std::int32_t IntPack __attribute__((vector_size(32)));
 typedef std::uint32_t UnsignedPack __attribute__((vector_size(32)));
-/// A Pack in memory that need not be aligned.
-typedef double UnalignedPack __attribute__((vector_size(64), aligned(8), may_alias));
 
-static inline Pack load(const double* p) {
-  return *reinterpret_cast<const UnalignedPack*>(p);
-}
-static inline void store(double* p, Pack x) {
-  *reinterpret_cast<UnalignedPack*>(p) = x;
-}
-static inline Pack broadcast(double x) {
-  return Pack{x, x, x, x, x, x, x, x};
-}
+}  // namespace pileus::PILEUS_ISA
 
-static inline Pack select(Mask m, Pack a, Pack b) {
-  return m ? a : b;
-}
+#if defined(__AVX2__) && !defined(__AVX512F__)
+#include "parcels/simd_halves.hpp"
+#else
+#include "parcels/simd_whole.hpp"
+#endif
+
+namespace pileus::PILEUS_ISA {
+
 static inline Pack maximum(Pack a, Pack b) {
-  return a > b ? a : b;
+  return select(a > b, a, b);
 }
 static inline Pack minimum(Pack a, Pack b) {
-  return a < b ? a : b;
+  return select(a < b, a, b);
 }
 static inline Pack absolute(Pack a) {
-  return a < 0.0 ? -a : a;
-}
-
-static inline Pack square_root(Pack x) {
-#if defined(__AVX512F__)
-  return _mm512_sqrt_pd(x);
-#elif defined(__AVX__)
-  __m256d low = _mm256_sqrt_pd(__m256d{x[0], x[1], x[2], x[3]});
-  __m256d high = _mm256_sqrt_pd(__m256d{x[4], x[5], x[6], x[7]});
-  return Pack{low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
-#else
-  for (int i = 0; i < lanes; ++i) x[i] = __builtin_sqrt(x[i]);
-  return x;
-#endif
+  return select(a < 0.0, -a, a);
 }
 
 /// 1/√x for x > 0 to within two units in the last place: an estimate of 14 bits refined twice,
@@ -78,30 +58,6 @@ static inline Pack rough_inverse(Pack x) {
   return _mm512_rcp14_pd(x);
 #else
   return 1.0 / x;
-#endif
-}
-
-/// Largest integer not above x, as 32-bit integers; x must lie within ±2^31.
-static inline IntPack floor_to_int(Pack x) {
-  const IntPack truncated = __builtin_convertvector(x, IntPack);
-  const Pack back = __builtin_convertvector(truncated, Pack);
-  const IntPack one_too_high = __builtin_convertvector(back > x, IntPack);  // −1 where true
-  // Modulo 2^32: a value beyond the range gives some integer, not undefined behaviour.
-  return reinterpret_cast<IntPack>(reinterpret_cast<UnsignedPack>(truncated) +
-                                   reinterpret_cast<UnsignedPack>(one_too_high));
-}
-static inline Pack to_pack(IntPack i) {
-  return __builtin_convertvector(i, Pack);
-}
-
-/// Does the condition hold in any lane?
-static inline bool any(Mask m) {
-#if defined(__AVX512F__)
-  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(m), reinterpret_cast<__m512i>(m)) != 0;
-#else
-  long together = 0;
-  for (int i = 0; i < lanes; ++i) together |= m[i];
-  return together != 0;
 #endif
 }
 

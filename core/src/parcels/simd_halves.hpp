@@ -1,0 +1,123 @@
+// The Pack of simd.hpp as two registers of AVX2. A vector type of eight doubles would live in
+// memory there: every operation would load and store.
+#pragma once
+#include <immintrin.h>
+
+namespace pileus::PILEUS_ISA {
+
+typedef double Half __attribute__((vector_size(32), may_alias));
+typedef long HalfMask __attribute__((vector_size(32), may_alias));  // all ones where true
+
+struct [[gnu::may_alias]] Mask {
+  HalfMask low, high;
+  long operator[](std::size_t lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
+};
+
+struct [[gnu::may_alias]] Pack {
+  Half low, high;
+  double operator[](std::size_t lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
+  double& operator[](std::size_t lane) { return reinterpret_cast<double*>(this)[lane]; }
+};
+
+static inline Pack load(const double* p) {
+  return {_mm256_loadu_pd(p), _mm256_loadu_pd(p + 4)};
+}
+static inline void store(double* p, Pack x) {
+  _mm256_storeu_pd(p, x.low);
+  _mm256_storeu_pd(p + 4, x.high);
+}
+static inline Pack broadcast(double x) {
+  const Half half = _mm256_set1_pd(x);
+  return {half, half};
+}
+
+#define PILEUS_ARITHMETIC(OP)                               \
+  static inline Pack operator OP(Pack a, Pack b) {          \
+    return {a.low OP b.low, a.high OP b.high};              \
+  }                                                         \
+  static inline Pack operator OP(Pack a, double b) {        \
+    return {a.low OP b, a.high OP b};                       \
+  }                                                         \
+  static inline Pack operator OP(double a, Pack b) {        \
+    return {a OP b.low, a OP b.high};                       \
+  }                                                         \
+  template <class T>                                        \
+  static inline Pack& operator OP##=(Pack& a, const T& b) { \
+    return a = a OP b;                                      \
+  }
+#define PILEUS_COMPARISON(OP)                        \
+  static inline Mask operator OP(Pack a, Pack b) {   \
+    return {a.low OP b.low, a.high OP b.high};       \
+  }                                                  \
+  static inline Mask operator OP(Pack a, double b) { \
+    return {a.low OP b, a.high OP b};                \
+  }
+PILEUS_ARITHMETIC(+)
+PILEUS_ARITHMETIC(-)
+PILEUS_ARITHMETIC(*)
+PILEUS_ARITHMETIC(/)
+PILEUS_COMPARISON(<)
+PILEUS_COMPARISON(<=)
+PILEUS_COMPARISON(>)
+PILEUS_COMPARISON(>=)
+#undef PILEUS_ARITHMETIC
+#undef PILEUS_COMPARISON
+
+static inline Pack operator-(Pack a) {
+  return {-a.low, -a.high};
+}
+static inline Mask operator&(Mask a, Mask b) {
+  return {a.low & b.low, a.high & b.high};
+}
+
+static inline Pack select(Mask m, Pack a, Pack b) {
+  return {m.low ? a.low : b.low, m.high ? a.high : b.high};
+}
+
+static inline Pack square_root(Pack x) {
+  return {_mm256_sqrt_pd(x.low), _mm256_sqrt_pd(x.high)};
+}
+
+/// Largest integer not above x, as 32-bit integers; x must lie within ±2^31, other values give some
+/// integer.
+static inline IntPack floor_to_int(Pack x) {
+  const __m128i low = _mm256_cvttpd_epi32(_mm256_floor_pd(x.low));
+  const __m128i high = _mm256_cvttpd_epi32(_mm256_floor_pd(x.high));
+  return reinterpret_cast<IntPack>(_mm256_set_m128i(high, low));
+}
+static inline Pack to_pack(IntPack i) {
+  const __m256i all = reinterpret_cast<__m256i>(i);
+  return {_mm256_cvtepi32_pd(_mm256_castsi256_si128(all)),
+          _mm256_cvtepi32_pd(_mm256_extracti128_si256(all, 1))};
+}
+
+/// Does the condition hold in any lane?
+static inline bool any(Mask m) {
+  const HalfMask either = m.low | m.high;
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(either)) != 0;
+}
+
+/// Transposes a 4×4 block held in four halves.
+static inline void transpose(Half& a, Half& b, Half& c, Half& d) {
+  const Half ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+  const Half cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+  a = _mm256_permute2f128_pd(ab_even, cd_even, 0x20);
+  b = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
+  c = _mm256_permute2f128_pd(ab_even, cd_even, 0x31);
+  d = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
+}
+
+/// Transposes an 8×8 block held in eight packs: its four quarters, two of which change places.
+static inline void transpose(Pack (&r)[8]) {
+  transpose(r[0].low, r[1].low, r[2].low, r[3].low);
+  transpose(r[0].high, r[1].high, r[2].high, r[3].high);
+  transpose(r[4].low, r[5].low, r[6].low, r[7].low);
+  transpose(r[4].high, r[5].high, r[6].high, r[7].high);
+  for (int i = 0; i < 4; ++i) {
+    const Half kept = r[i].high;
+    r[i].high = r[i + 4].low;
+    r[i + 4].low = kept;
+  }
+}
+
+}  // namespace pileus::PILEUS_ISA
