@@ -6,6 +6,7 @@
 #pragma once
 #include <omp.h>
 
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <limits>
@@ -41,12 +42,53 @@ class FirstFailure {
   std::size_t task_ = std::numeric_limits<std::size_t>::max();
 };
 
+/// Shares of consecutive tasks, one per thread. A thread works through its own share and then helps
+/// the others with theirs. The same task so tends to meet the same thread, with its data in that
+/// thread's cache, in one loop after another.
+class TaskShares {
+ public:
+  TaskShares(std::size_t tasks, int threads)
+      : tasks_(tasks), shares_(static_cast<std::size_t>(threads < most ? threads : most)) {
+    for (std::size_t s = 0; s < shares_; ++s) next_[s].task.store(begin(s));
+  }
+  /// Calls body(task) until no share has a task left; on every thread of a parallel region.
+  template <class F>
+  void work(int thread, F&& body) {
+    for (std::size_t turn = 0; turn < shares_; ++turn) {
+      const std::size_t share = (static_cast<std::size_t>(thread) + turn) % shares_;
+      const std::size_t end = begin(share + 1);
+      for (;;) {
+        const std::size_t task = next_[share].task.fetch_add(1, std::memory_order_relaxed);
+        if (task >= end) break;
+        body(task);
+      }
+    }
+  }
+
+ private:
+  static constexpr int most = 128;
+  std::size_t begin(std::size_t share) const { return tasks_ * share / shares_; }
+
+  struct alignas(64) Counter {
+    std::atomic<std::size_t> task;
+  };
+  std::size_t tasks_, shares_;
+  Counter next_[most];
+};
+
 /// Calls body(task) for task = 0 … count−1, in any order, on all threads.
 template <class F>
 void parallel_tasks(std::size_t count, F&& body) {
   FirstFailure failure;
-#pragma omp parallel for schedule(dynamic, 1) if (count > 1)
-  for (std::size_t task = 0; task < count; ++task) failure.guard(task, [&] { body(task); });
+  const int threads = omp_in_parallel() ? 1 : omp_get_max_threads();
+  if (count <= 1 || threads == 1) {
+    for (std::size_t task = 0; task < count; ++task) failure.guard(task, [&] { body(task); });
+  } else {
+    TaskShares shares(count, threads);
+#pragma omp parallel
+    shares.work(omp_get_thread_num(),
+                [&](std::size_t task) { failure.guard(task, [&] { body(task); }); });
+  }
   failure.rethrow();
 }
 
