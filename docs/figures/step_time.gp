@@ -5,8 +5,8 @@ data = "docs/figures/step_time.dat"
 pick(label, threads, set) = sprintf("< awk '$1 == \"%s\" && $2 == %d && $3 == \"%s\"' %s", label, threads, set, data)
 deposit = 13; compensation = 14; inversion = 15; tendency = 16; interpolate = 17; update = 18
 closure = 19; sort = 21; merge = 22; split = 23; correction = 24
-runs = "wave,1,avx512 wave,2,avx512 thermal,1,avx512 thermal,2,avx512 wave,1,avx2 wave,1,baseline"
-names = "'wave, 1 thread' 'wave, 2 threads' 'thermal, 1 thread' 'thermal, 2 threads' 'wave, 1, AVX2' 'wave, 1, SSE2'"
+runs = "wave,1,avx512 wave,2,avx512 thermal,1,avx512 thermal,2,avx512 wave,1,avx2"
+names = "'wave, 1 thread' 'wave, 2 threads' 'thermal, 1 thread' 'thermal, 2 threads' 'wave, 1 thread, AVX2'"
 field(run, n) = word(system(sprintf("echo %s | tr , ' '", run)), n)
 table(run) = pick(field(run, 1), int(field(run, 2)), field(run, 3))
 entry(run, column) = real(system(sprintf("awk '$1 == \"%s\" && $2 == %s && $3 == \"%s\" {print $%d}' %s", field(run, 1), field(run, 2), field(run, 3), column, data)))
@@ -54,7 +54,7 @@ do for [terminal in "svg png"] {
   set boxwidth 0.7
   set style fill solid 1 noborder
   set xtics rotate by -40 font ",9"
-  set yrange [0:*]
+  set yrange [0:1600]
   set key top left samplen 1 spacing 0.9 font ",9" invert
   plot for [n=1:7] $bars using (column(n + 1)):xtic(1) lc rgb colour[n] title word(parts, n)
   set title "speed-up of two threads over one"

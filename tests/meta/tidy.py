@@ -31,8 +31,8 @@ def recorded_dependencies(build):
 
 
 def key_of(command, dependencies, root):
-    """A digest of all that decides clang-tidy's verdict on one source."""
-    digest = hashlib.sha256(command["command"].encode())
+    """A digest of all that decides clang-tidy's verdict on one source, wherever the tree lies."""
+    digest = hashlib.sha256(command["command"].replace(str(root), "").encode())
     digest.update((root / ".clang-tidy").read_bytes())
     ours = [p for p in dependencies if root in p.parents] or [Path(command["file"])]
     for path in sorted(ours):
