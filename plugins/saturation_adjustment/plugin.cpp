@@ -1,10 +1,10 @@
 // Saturation adjustment as a closure: liquid water and buoyancy from the conserved quantities.
+#include <pileus/air_parameters.hpp>
 #include <pileus/plugin.hpp>
 
 #include <optional>
 
 #include "adjustment.hpp"
-#include "reference_state.hpp"
 
 namespace pileus::saturation {
 namespace {
@@ -24,8 +24,8 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   void configured() {
-    latent_buoyancy_ = value(gravity_) * value(latent_heat_) /
-                       (value(heat_capacity_) * value(buoyancy_temperature_));
+    latent_buoyancy_ = value(air_.gravity) * value(air_.latent_heat) /
+                       (value(air_.heat_capacity) * value(air_.buoyancy_temperature));
     if (choice(thermodynamics_) == 1) build_reference_state();
   }
 
@@ -60,17 +60,7 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   void describe_parameters(Declaration& d) {
     thermodynamics_ = d.choice("thermodynamics", {"ideal", "real"})
                           .doc("saturation by height alone, or by temperature and pressure");
-    gravity_ = d.number("gravity", "m s-2", 9.81).range(1e-3, 1e3).doc("acceleration of gravity");
-    latent_heat_ = d.number("latent_heat", "J kg-1", 2.5e6).range(1.0, 1e9).doc("of vaporisation");
-    heat_capacity_ = d.number("heat_capacity", "J kg-1 K-1", 1005.0)
-                         .range(1.0, 1e6)
-                         .doc("of dry air at constant pressure");
-    buoyancy_temperature_ = d.number("buoyancy_temperature", "K", 300.0)
-                                .range(1.0, 1e4)
-                                .doc("constant temperature that scales the buoyancy, theta_00");
-    base_height_ = d.number("base_height", "m", 0.0)
-                       .range(-1e6, 1e6)
-                       .doc("height of the surface humidity or surface pressure");
+    air_.describe_constants(d);
     surface_humidity_ = d.number("surface_humidity", "1", 0.015)
                             .range(0.0, 1.0)
                             .when(ideal)
@@ -79,28 +69,7 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
                         .range(1e-3, 1e6)
                         .when(ideal)
                         .doc("e-folding height of the saturation humidity, H");
-    surface_pressure_ = d.number("surface_pressure", "Pa", 1.0e5)
-                            .range(1e3, 2e5)
-                            .when(real)
-                            .doc("reference pressure at the base height");
-    gas_constant_ = d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04)
-                        .range(1.0, 1e4)
-                        .when(real)
-                        .doc("of dry air");
-    epsilon_ = d.number("epsilon", "1", 0.622)
-                   .range(0.01, 0.99)
-                   .when(real)
-                   .doc("ratio of the gas constants of dry air and vapour");
-    reference_height_ = d.numbers("reference_height", "m", 0.0)
-                            .range(-1e6, 1e6)
-                            .when(real)
-                            .doc("heights of the reference profile, ascending");
-    reference_theta_v_ = d.numbers("reference_potential_temperature", "K", 300.0)
-                             .range(50.0, 2000.0)
-                             .when(real)
-                             .doc(
-                                 "virtual potential temperature of the hydrostatic reference "
-                                 "state at those heights; buoyancy is measured from it");
+    air_.describe_real_air(d, real);
   }
 
   void describe_quantities(Declaration& d) {
@@ -128,26 +97,14 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   void build_reference_state() {
-    constants_ = {value(gravity_), value(gas_constant_), value(heat_capacity_), value(latent_heat_),
-                  value(epsilon_)};
-    const auto heights = list(reference_height_), theta_v = list(reference_theta_v_);
-    if (heights.size() != theta_v.size()) {
-      throw Failure(
-          "reference_height and reference_potential_temperature differ in their number of "
-          "values; give one temperature for each height",
-          PILEUS_E_CONFIG);
-    }
-    for (std::size_t i = 1; i < heights.size(); ++i) {
-      if (!(heights[i] > heights[i - 1])) {
-        throw Failure("reference_height does not ascend; order the heights from low to high",
-                      PILEUS_E_CONFIG);
-      }
-    }
-    reference_.emplace(heights, theta_v, value(base_height_), value(surface_pressure_), constants_);
+    const auto number = [this](Param p) { return value(p); };
+    constants_ = air_.constants(number);
+    formula_ = static_cast<thermo::SaturationFormula>(choice(air_.saturation_pressure));
+    reference_.emplace(air_.reference_state(number, [this](Param p) { return list(p); }));
   }
 
   void diagnose_ideal(Block block) const {
-    const IdealAir air{value(surface_humidity_), value(base_height_), value(scale_height_),
+    const IdealAir air{value(surface_humidity_), value(air_.base_height), value(scale_height_),
                        latent_buoyancy_};
     air.diagnose(block.count(), block.in(height_), block.in(buoyancy_l_), block.in(total_water_),
                  block.out(buoyancy_), block.out(liquid_));
@@ -162,16 +119,16 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
     double* t = block.out(temperature_);
     const double kappa = constants_.kappa();
     const double latent_over_heat = constants_.latent_heat / constants_.heat_capacity;
-    const double scale = constants_.gravity / value(buoyancy_temperature_);
+    const double scale = constants_.gravity / value(air_.buoyancy_temperature);
     block.each([&](auto p) {
-      const ReferenceState::Point at = reference_->at(z[p]);
+      const thermo::ReferenceState::Point at = reference_->at(z[p]);
       const double temperature_l = at.exner * theta[p];
       if (!(temperature_l >= coldest)) refuse_cold(block.uid(p), z[p], temperature_l);
       const double pressure = thermo::pressure_of_exner(at.exner, kappa);
       const Equilibrium found =
           adjust(temperature_l, total[p], latent_over_heat, [&](double kelvin) {
-            return thermo::saturation_specific_humidity(thermo::saturation_pressure(kelvin),
-                                                        pressure, constants_.epsilon);
+            return thermo::saturation_specific_humidity(
+                thermo::saturation_pressure(kelvin, formula_), pressure, constants_.epsilon);
           });
       wet[p] = found.liquid;
       t[p] = found.temperature;
@@ -191,13 +148,12 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   Slot height_, buoyancy_l_, theta_l_, total_water_, buoyancy_, liquid_, temperature_;
-  Param thermodynamics_, gravity_, latent_heat_, heat_capacity_, buoyancy_temperature_,
-      base_height_;
-  Param surface_humidity_, scale_height_;
-  Param surface_pressure_, gas_constant_, epsilon_, reference_height_, reference_theta_v_;
+  AirParameters air_;
+  Param thermodynamics_, surface_humidity_, scale_height_;
   double latent_buoyancy_ = 0;  // G, m s-2
   thermo::Constants constants_;
-  std::optional<ReferenceState> reference_;
+  thermo::SaturationFormula formula_ = thermo::SaturationFormula::bolton;
+  std::optional<thermo::ReferenceState> reference_;
 };
 
 }  // namespace

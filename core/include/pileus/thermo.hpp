@@ -36,6 +36,53 @@ inline numerics::ValueAndSlope saturation_pressure(double temperature) {
   return {pressure, pressure * slope * (freezing - pole) / (above_pole * above_pole)};
 }
 
+/// Published fits of the saturation vapour pressure over liquid water. They differ by 0.5 % at 25
+/// °C and by 3.5 % at −40 °C: runs of different fits are not comparable below that.
+enum class SaturationFormula {
+  bolton,      // Bolton 1980, eq. 10; −35 to 35 °C
+  tetens,      // Tetens 1930 in the form of Murray 1967; −20 to 50 °C
+  magnus,      // Alduchov & Eskridge 1996 (AERK); −40 to 50 °C
+  buck,        // Buck 1996; −80 to 50 °C
+  murphy_koop  // Murphy & Koop 2005, eq. 10 (doi:10.1256/qj.04.94); 123 to 332 K
+};
+
+/// The same by a formula of choice. Requires a temperature above the formula's pole (at most 36 K).
+inline numerics::ValueAndSlope saturation_pressure(double temperature, SaturationFormula formula) {
+  constexpr double freezing = 273.15;
+  const double t = temperature - freezing;
+  // a exp(b t/(T − pole)) has the slope e b (273.15 − pole)/(T − pole)².
+  const auto rational = [&](double a, double b, double pole) -> numerics::ValueAndSlope {
+    const double above = temperature - pole;
+    const double e = a * std::exp(b * t / above);
+    return {e, e * b * (freezing - pole) / (above * above)};
+  };
+  switch (formula) {
+    case SaturationFormula::tetens:
+      return rational(610.78, 17.2693882, 35.86);
+    case SaturationFormula::magnus:
+      return rational(610.94, 17.625, freezing - 243.04);
+    case SaturationFormula::buck: {
+      const double above = 257.14 + t, factor = 18.678 - t / 234.5;
+      const double e = 611.21 * std::exp(factor * t / above);
+      return {e, e * ((factor - t / 234.5) / above - factor * t / (above * above))};
+    }
+    case SaturationFormula::murphy_koop: {
+      const double log_t = std::log(temperature), inverse = 1.0 / temperature;
+      const double step = std::tanh(0.0415 * (temperature - 218.8));
+      const double cold = 53.878 - 1331.22 * inverse - 9.44523 * log_t + 0.014025 * temperature;
+      const double e = std::exp(54.842763 - 6763.22 * inverse - 4.21 * log_t +
+                                0.000367 * temperature + step * cold);
+      const double slope = 6763.22 * inverse * inverse - 4.21 * inverse + 0.000367 +
+                           0.0415 * (1.0 - step * step) * cold +
+                           step * (1331.22 * inverse * inverse - 9.44523 * inverse + 0.014025);
+      return {e, e * slope};
+    }
+    case SaturationFormula::bolton:
+      break;
+  }
+  return saturation_pressure(temperature);
+}
+
 /// Saturation specific humidity ε e/(p − (1−ε) e) and its slope in T, from those of e.
 ///
 /// Above the boiling point (e ≥ p) only vapour is left: the value is 1 and the slope 0, so that
@@ -48,9 +95,13 @@ inline numerics::ValueAndSlope saturation_specific_humidity(numerics::ValueAndSl
 }
 
 /// Saturation mixing ratio ε e/(p − e), kg of vapour per kg of dry air, and its slope in T.
-/// Requires e < p.
+///
+/// Next to the boiling point and above it (e ≥ 0.99 p) the value is the one at 0.99 p and the slope
+/// 0, so that the function stays increasing and finite for every temperature.
 inline numerics::ValueAndSlope saturation_mixing_ratio(numerics::ValueAndSlope vapour,
                                                        double pressure, double epsilon) {
+  constexpr double boiling = 0.99;
+  if (vapour.value >= boiling * pressure) return {epsilon * boiling / (1.0 - boiling), 0.0};
   const double rest = pressure - vapour.value;
   return {epsilon * vapour.value / rest, epsilon * pressure * vapour.slope / (rest * rest)};
 }

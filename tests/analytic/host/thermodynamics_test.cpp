@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../../../plugins/saturation_adjustment/adjustment.hpp"
-#include "../../../plugins/saturation_adjustment/reference_state.hpp"
+#include "pileus/reference_state.hpp"
 
 namespace pileus::saturation {
 namespace {
@@ -73,7 +73,7 @@ TEST(Exner, equals_the_table) {
 TEST(ReferenceState, of_one_temperature_is_the_adiabatic_atmosphere) {
   const std::vector<double> heights = {0}, theta = {300};
   const thermo::Constants constants{9.80616, gas_constant, heat_capacity, latent_heat, epsilon};
-  const ReferenceState state(heights, theta, 0, 1e5, constants);
+  const thermo::ReferenceState state(heights, theta, 0, 1e5, constants);
   const double z[] = {500, 1000, 1500, 2000, 3000};
   const double exner[] = {0.98374903, 0.96749806, 0.95124709, 0.93499612, 0.90249418};
   const double pascal[] = {94421.2405, 89068.4964, 83936.1773, 79018.7402, 69806.5767};
@@ -88,7 +88,7 @@ TEST(ReferenceState, of_a_profile_solves_the_hydrostatic_equation) {
   const std::vector<double> heights = {0, 520, 1480, 2000, 3000};
   const std::vector<double> theta = {298.7, 298.7, 302.4, 308.2, 311.85};
   const thermo::Constants constants;
-  const ReferenceState state(heights, theta, 0, 101500, constants);
+  const thermo::ReferenceState state(heights, theta, 0, 101500, constants);
   EXPECT_NEAR(state.at(0).exner, thermo::exner(101500, constants.kappa()), 1e-15);
   for (double z = -400; z < 4000; z += 100) {
     // Simpson's rule on a segment of 100 m: its error is below 1e-13 for these profiles, except

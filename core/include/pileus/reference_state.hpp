@@ -1,13 +1,13 @@
 // The hydrostatic state whose pressure the thermodynamics use: a function of height alone.
 #pragma once
-#include <pileus/thermo.hpp>
-
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
 
-namespace pileus::saturation {
+#include "thermo.hpp"
+
+namespace pileus::thermo {
 
 /// Air at rest with a virtual potential temperature that is piecewise linear in height and constant
 /// beyond its ends; its Exner function solves dΠ/dz = −g/(c_p θ_v) exactly on every segment.
@@ -16,7 +16,7 @@ class ReferenceState {
   /// `heights` (m) ascending and `theta_v` (K, positive) of the same length, at least one; the
   /// pressure is `surface_pressure` (Pa) at `base_height` (m).
   ReferenceState(std::span<const double> heights, std::span<const double> theta_v,
-                 double base_height, double surface_pressure, const thermo::Constants& constants)
+                 double base_height, double surface_pressure, const Constants& constants)
       : height_(heights.begin(), heights.end()),
         theta_v_(theta_v.begin(), theta_v.end()),
         gradient_(constants.gravity / constants.heat_capacity) {
@@ -63,4 +63,4 @@ class ReferenceState {
   double gradient_;  // g/c_p, K m-1
 };
 
-}  // namespace pileus::saturation
+}  // namespace pileus::thermo
