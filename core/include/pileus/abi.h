@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 #define PILEUS_ABI_MAJOR 0u /* also in the entry symbol's name: a new major is a new symbol */
-#define PILEUS_ABI_MINOR 0u /* raised when a table grows */
+#define PILEUS_ABI_MINOR 1u /* raised when a table grows */
 #define PILEUS_ENTRY_SYMBOL "pileus_module_v0"
 #define PILEUS_EXPORT __attribute__((visibility("default")))
 /* Does table P, filled in by the other side, reach as far as MEMBER? A member that is not reached
@@ -216,6 +216,9 @@ typedef struct pileus_host {
   uint64_t (*span_begin)(const struct pileus_host*, const char* name);
   void (*span_end)(const struct pileus_host*, uint64_t span);
   const void* (*extension)(const struct pileus_host*, const char* id); /* [setup] NULL: unknown */
+  /* [step][block] counts repairs for the run's ledger: increments that a limiter cut, values moved
+   * into their range. Conserving or not, none goes unreported. Since minor 1 */
+  void (*repaired)(const struct pileus_host*, uint64_t count);
 } pileus_host;
 
 /* ---- what a plugin implements ------------------------------------------------------------------

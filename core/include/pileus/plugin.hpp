@@ -109,6 +109,11 @@ class Block {
   /// Books an amount brought in from outside (positive) or lost to it.
   void book(Budget budget, double amount) const { raw_.ledger[budget.index] += amount; }
 
+  /// Reports increments cut by limiters and values moved into their range, for the run's ledger.
+  void repaired(std::uint64_t count) const {
+    if (count > 0 && PILEUS_HAS(&host_, pileus_host, repaired)) host_.repaired(&host_, count);
+  }
+
   /// Room for `count` values until the call returns; contents undefined.
   std::span<double> scratch(std::size_t count) const {
     void* room = host_.scratch(&host_, count * sizeof(double));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "coupling/quantity_plan.hpp"
@@ -21,6 +22,11 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store) {
     slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
     if (host::holds(table.quantity_when[i], bound.entry->values.numbers())) {
       slot.column = find_column(store, row.name);
+      const bool absent = slot.column < 0 && row.name == std::string_view("y_position");
+      if (absent) {  // the plane has no y: the slot does not exist
+        bound.slots.push_back(slot);
+        continue;
+      }
       if (slot.column < 0) {
         throw Error(ExitCode::usage,
                     fmt::format("operator '{}' needs '{}', which parcels in {} dimensions do not "

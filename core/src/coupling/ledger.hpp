@@ -43,7 +43,8 @@ struct OperatorLedger {
   std::uint64_t parcels = 0;  // handed over, summed over calls
   std::uint64_t skipped = 0;  // found inactive
   std::uint64_t retries = 0;
-  double core_seconds = 0;  // summed over threads
+  std::uint64_t repairs = 0;  // reported by the plugin
+  double core_seconds = 0;    // summed over threads
   std::vector<OperatorBudget> budgets;
   std::vector<host::Span> spans;  // timers of the plugin's own
 };

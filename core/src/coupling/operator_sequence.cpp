@@ -111,6 +111,7 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
   }
   runner_ = std::make_unique<BlockRunner>(bound_, store, grid_ ? &*grid_ : nullptr);
   versions_.assign(static_cast<std::size_t>(store.column_count()), next_version_++);
+  previous_height_ = find_column(store, previous_height_name);
   workspaces_.clear();
   stale_.reserve(plan_.closures.size());
 }
@@ -135,6 +136,7 @@ void OperatorSequence::resume(const StepTime& step) {
 
 void OperatorSequence::start(const StepTime& step, bool new_run) {
   prepare_workspaces();
+  if (new_run) remember_heights();
   for (std::size_t which = 0; which < bound_.size(); ++which) {
     BoundOperator& bound = bound_[which];
     if (!new_run) {
@@ -222,6 +224,14 @@ void OperatorSequence::diagnose(const StepTime& step) {
   refresh(step);
 }
 
+/// What transport and upkeep move from here on is the ascent that the next calls account for.
+void OperatorSequence::remember_heights() {
+  if (previous_height_ < 0) return;
+  const double* height = store_->position(store_->dimension() - 1);
+  std::copy_n(height, store_->size(), store_->column(previous_height_));
+  versions_[static_cast<std::size_t>(previous_height_)] = next_version_++;
+}
+
 /// Runs the closures whose inputs have changed since they last ran, and those that depend on them.
 void OperatorSequence::refresh(const StepTime& step) {
   stale_.clear();
@@ -266,6 +276,7 @@ void OperatorSequence::apply_before_transport(const StepTime& step) {
     if (form != PILEUS_FLOW) continue;  // projections and observers act once, at the end
     apply(which, {step.number, step.time, 0.5 * step.dt}, false);
   }
+  remember_heights();
 }
 
 void OperatorSequence::apply_after_transport(const StepTime& step) {
@@ -278,6 +289,7 @@ void OperatorSequence::apply_after_transport(const StepTime& step) {
       apply(*which, step, true);
     }
   }
+  remember_heights();
 }
 
 /// If nothing the conditions read has changed since they were false for every parcel, they are

@@ -119,6 +119,7 @@ class OperatorSequence {
   void close_books(std::size_t which, std::size_t blocks);
   std::uint64_t version_of(const std::vector<int>& columns) const;
   void touch_core();
+  void remember_heights();
   void throw_first_failure();
   [[noreturn]] void fail(const BlockFailure& failure, const char* phase);
   std::size_t block_count() const;
@@ -131,6 +132,7 @@ class OperatorSequence {
   std::vector<std::size_t> order_;  // operators with apply, outermost first
   parcels::Store* store_ = nullptr;
   std::optional<pileus_grid> grid_;
+  int previous_height_ = -1;  // column, if an operator asks for it
   std::vector<BoundOperator> bound_;
   std::unique_ptr<BlockRunner> runner_;
   std::vector<std::size_t> stale_;          // closures to run now

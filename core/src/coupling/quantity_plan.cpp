@@ -152,7 +152,7 @@ class Planner {
   }
 
   void check_source(const std::string& name, const Claim& reader, const Claim* owner) {
-    const bool set = initial_.count(name) > 0;
+    const bool set = initial_.count(name) > 0 || name == previous_height_name;
     if (owner == nullptr && !set) {
       complain(
           fmt::format("operator '{}' needs '{}', which no operator provides and the initial state "

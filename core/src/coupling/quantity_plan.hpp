@@ -14,6 +14,10 @@ inline constexpr const char* buoyancy_name = "buoyancy";
 /// Read-only quantities of the core that go by a name of their own.
 inline constexpr const char* height_name = "height";  // of the parcel's centre, m
 inline constexpr const char* volume_name = "parcel_volume";
+/// The height when the operators last advanced the parcel, m: kept by the core where an operator
+/// declares it, and merged like a position. An operator may set it to the present height for the
+/// parcels whose ascent it has accounted for.
+inline constexpr const char* previous_height_name = "previous_height";
 
 /// What the sequence of operators asks of the parcels.
 struct QuantityPlan {

@@ -53,7 +53,10 @@ Ledger OperatorSequence::ledger() const {
       entry.budgets.push_back({table.budgets[b], progress_[which].change[b].value(),
                                progress_[which].source[b].value()});
     }
-    if (which < bound_.size()) entry.spans = bound_[which].instance->spans();
+    if (which < bound_.size()) {
+      entry.spans = bound_[which].instance->spans();
+      entry.repairs = bound_[which].instance->repairs();
+    }
     ledger.operators.push_back(std::move(entry));
   }
   if (store_ == nullptr) return ledger;

@@ -38,6 +38,7 @@ class Instance {
   const OperatorTable& table() const { return *table_; }
   LifeState state() const { return state_; }
   std::vector<Span> spans() const { return services_.spans(); }
+  std::uint64_t repairs() const { return services_.repairs(); }
 
   /// Hands over the parameters. Errors  Error(ExitCode::plugin) with the plugin's own sentence
   void configure(ParameterValues& values);

@@ -114,6 +114,7 @@ Services::Services(std::string operator_id, const std::atomic<bool>* stop)
   table_.span_begin = begin_span;
   table_.span_end = end_span;
   table_.extension = find_extension;
+  table_.repaired = count_repairs;
 }
 
 void Services::write_log(const pileus_host* host, std::uint32_t level, const char* text) {
@@ -156,6 +157,10 @@ void Services::end_span(const pileus_host* host, std::uint64_t token) {
   Timer& timer = self(host).timers_[index - 1];
   timer.calls.fetch_add(1, std::memory_order_relaxed);
   timer.nanoseconds.fetch_add((now_ns() - token) << 4 >> 4, std::memory_order_relaxed);
+}
+
+void Services::count_repairs(const pileus_host* host, std::uint64_t count) {
+  self(host).repairs_.fetch_add(count, std::memory_order_relaxed);
 }
 
 std::vector<Span> Services::spans() const {

@@ -29,6 +29,7 @@ class Services {
 
   const pileus_host& table() const { return table_; }
   std::vector<Span> spans() const;
+  std::uint64_t repairs() const { return repairs_.load(); }
 
  private:
   static const Services& self(const pileus_host* host) {
@@ -38,6 +39,7 @@ class Services {
   static int answer_should_stop(const pileus_host*);
   static std::uint64_t begin_span(const pileus_host*, const char* name);
   static void end_span(const pileus_host*, std::uint64_t token);
+  static void count_repairs(const pileus_host*, std::uint64_t count);
 
   struct Timer {
     char name[40] = {};
@@ -51,6 +53,7 @@ class Services {
   mutable std::array<Timer, most_timers> timers_;
   mutable std::atomic<std::size_t> timer_count_ = 0;
   mutable std::mutex adding_timer_;
+  mutable std::atomic<std::uint64_t> repairs_ = 0;
 };
 
 /// Gives back all scratch memory of this thread; called before each outermost call into a plugin.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* liquid_name = "mass_fraction_of_cloud_liquid_water_in_air";
-constexpr const char* water_name = "total_water_mass_fraction";
+constexpr const char* water_budget = "water";
 
 struct StateSums {
   double volume = 0, buoyancy = 0, potential = 0, enstrophy = 0;
@@ -84,19 +84,21 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
     mean_vorticity_.push_back(
         add(three ? std::string("mean_") + "xyz"[c] + "_vorticity" : "mean_vorticity", "s-1",
             "domain-mean vorticity"));
+  bool holds_water = false;
   for (std::size_t s = 0; s < store.scalars().size(); ++s) {
     const parcels::Scalar& scalar = store.scalars()[s];
     if (scalar.name == "buoyancy" || scalar.nature == parcels::Nature::derived) continue;
-    ScalarEntries entries{static_cast<int>(s), 0, 0, 0};
+    ScalarEntries entries{static_cast<int>(s), 0, 0, 0, false};
     const bool conserved = scalar.nature == parcels::Nature::intensive;
     entries.mean = add("mean_" + scalar.name, scalar.units, "domain mean", conserved);
     entries.low = add("min_" + scalar.name, scalar.units, "smallest value of a parcel");
     entries.high = add("max_" + scalar.name, scalar.units, "largest value of a parcel");
+    entries.water = scalar.budget == water_budget;
+    holds_water = holds_water || entries.water;
     scalars_.push_back(entries);
   }
   liquid_scalar_ = store.find_scalar(liquid_name);
-  water_scalar_ = store.find_scalar(water_name);
-  if (water_scalar_ >= 0) total_water_ = add("total_water", "1", "mean total water", true);
+  if (holds_water) total_water_ = add("total_water", "1", "mean total water", true);
   if (liquid_scalar_ >= 0) {
     mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
     max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");
@@ -220,6 +222,7 @@ void Diagnostics::observe_parcels(Simulation& simulation) {
 void Diagnostics::observe_scalars(const Simulation& simulation) {
   const parcels::Store& store = simulation.store();
   const double* volume = store.volume();
+  double total_water = 0;
   for (const ScalarEntries& entry : scalars_) {
     const double* value = store.scalar(entry.scalar);
     const bool per_volume = store.scalars()[static_cast<std::size_t>(entry.scalar)].nature ==
@@ -242,8 +245,9 @@ void Diagnostics::observe_scalars(const Simulation& simulation) {
     set(entry.mean, mean);
     set(entry.low, sums.low);
     set(entry.high, sums.high);
-    if (entry.scalar == water_scalar_) set(total_water_, mean);
+    if (entry.water) total_water += mean;
   }
+  if (total_water_ >= 0) set(total_water_, total_water);
 }
 
 void Diagnostics::observe_cloud(const Simulation& simulation) {

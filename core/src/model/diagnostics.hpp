@@ -52,6 +52,7 @@ class Diagnostics {
   };
   struct ScalarEntries {
     int scalar, mean, low, high;
+    bool water = false;  // part of the budget of that name
   };
 
   std::vector<DiagnosticInfo> list_;
@@ -67,7 +68,7 @@ class Diagnostics {
   std::vector<std::vector<int>> histogram_entries_;
   std::vector<ScalarEntries> scalars_;
   double cloud_threshold_;
-  int liquid_scalar_ = -1, water_scalar_ = -1;
+  int liquid_scalar_ = -1;
   int kinetic_, grid_kinetic_, potential_, available_, total_, mechanical_, enstrophy_, volume_,
       mean_buoyancy_, min_buoyancy_, max_buoyancy_, max_speed_, max_vertical_velocity_,
       min_vertical_velocity_, max_vorticity_, volume_error_rms_, volume_error_max_, parcels_;

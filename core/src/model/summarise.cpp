@@ -71,7 +71,8 @@ output::Summary Loop::summary() const {
 
   const coupling::Ledger ledger = sequence_.ledger();
   for (const auto& op : ledger.operators)
-    s.operators.push_back({op.name, op.parcels, op.skipped, op.core_seconds, op.retries, 0});
+    s.operators.push_back(
+        {op.name, op.parcels, op.skipped, op.core_seconds, op.retries, op.repairs});
   s.effects = effects_of(sequence_, ledger);
   for (const auto& total : ledger.totals) {
     output::BudgetSummary budget;
