@@ -1,0 +1,66 @@
+// The air a parcel's water exchanges heat and vapour with: saturation at a temperature and
+// pressure.
+#pragma once
+#include <pileus/thermo.hpp>
+
+namespace pileus::two_moment {
+
+enum class HumidityMeasure { specific_humidity, mixing_ratio };
+
+/// Where a parcel is: the reference state at its height.
+struct Level {
+  double pressure;    // Pa
+  double exner;       // 1
+  double prescribed;  // temperature of a prescribed profile, K; used only with it
+};
+
+/// Saturation at one temperature and pressure.
+struct Saturation {
+  double humidity;  // q_s, kg kg-1
+  double slope;     // dq_s/dT, K-1
+  double pressure;  // of vapour, e_s, Pa
+};
+
+/// Temperatures below this are no air the formulas are meant for, K.
+inline constexpr double coldest_air = 100.0;
+
+struct MoistAir {
+  thermo::Constants constants;
+  thermo::SaturationFormula formula = thermo::SaturationFormula::bolton;
+  HumidityMeasure measure = HumidityMeasure::specific_humidity;
+  bool prescribed_temperature = false;  // no latent heating; temperature by height alone
+
+  double vapour_gas_constant() const { return constants.gas_constant_dry_air / constants.epsilon; }
+  /// Warming by condensing one kg per kg of air, L/c_p, K; 0 for a prescribed temperature.
+  double warming() const {
+    return prescribed_temperature ? 0.0 : constants.latent_heat / constants.heat_capacity;
+  }
+  double temperature(double theta, const Level& level) const {
+    return prescribed_temperature ? level.prescribed : level.exner * theta;
+  }
+  double density(double temperature, double pressure) const {
+    return pressure / (constants.gas_constant_dry_air * temperature);
+  }
+
+  /// Below this, where the formulas have their poles and saturated air holds less than 1e-15 of
+  /// vapour, it holds none: the search for an equilibrium may look there.
+  Saturation saturation(double temperature, double pressure) const {
+    if (!(temperature > coldest_air)) return {0, 0, 0};
+    const numerics::ValueAndSlope e = thermo::saturation_pressure(temperature, formula);
+    const numerics::ValueAndSlope q =
+        measure == HumidityMeasure::specific_humidity
+            ? thermo::saturation_specific_humidity(e, pressure, constants.epsilon)
+            : thermo::saturation_mixing_ratio(e, pressure, constants.epsilon);
+    return {q.value, q.slope, e.value};
+  }
+
+  /// Vapour pressure over its saturation value: e/e_s, with e of the humidity's measure.
+  double relative_humidity(double vapour, double temperature, double pressure) const {
+    if (vapour == 0) return 0;
+    const double dry = measure == HumidityMeasure::specific_humidity ? 1.0 - vapour : 1.0;
+    const double e = pressure * vapour / (constants.epsilon * dry + vapour);
+    return e / thermo::saturation_pressure(temperature, formula).value;
+  }
+};
+
+}  // namespace pileus::two_moment
