@@ -177,7 +177,7 @@ extern "C" PILEUS_EXPORT const pileus_module* HOSTILE_ENTRY(void) {
   static const pileus_operator op = make_operator();
   static const pileus_operator* const list[] = {is("no_operators") ? nullptr : &op, nullptr};
   static const pileus_module module{is("short_module") ? 8u : std::uint32_t{sizeof(pileus_module)},
-                                    0, is("disagrees_with_note") ? 1u : 0u, 0, list};
+                                    PILEUS_ABI_MINOR, is("disagrees_with_note") ? 1u : 0u, 0, list};
   if (is("throwing_entry")) throw std::runtime_error("no entry");
   return is("null_module") ? nullptr : &module;
 }
