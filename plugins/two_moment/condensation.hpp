@@ -298,13 +298,13 @@ class Condensation {
     const double a = air_.warming();
     const double all = -(water.cloud + water.rain);
     const double coldest = a > 0 ? std::min(0.0, (coldest_air - now.end_temperature) / a) : all;
-    const double total = increment(taken, std::max(all, coldest), water.vapour, end, now);
-    double to_rain = 0;
-    if (r.rain > 0 && total < 0) {
-      to_rain = std::max(-water.rain, total * (r.rain / (r.cloud + r.rain)));
-    }
+    const double low = std::max(all, coldest);
+    const double total = increment(taken, low, water.vapour, end, now);
+    const double rain = r.rain > 0 && total < 0 ? total * (r.rain / (r.cloud + r.rain)) : 0.0;
+    const double to_rain = std::max(rain, -water.rain);
     const double to_cloud = std::max(total - to_rain, -water.cloud);
-    if (to_cloud == -water.cloud || to_rain == -water.rain || total == water.vapour) ++did.limited;
+    const bool cut = to_rain > rain || to_cloud > total - to_rain;
+    if (cut || (total < 0 && total <= low) || (total > 0 && total >= water.vapour)) ++did.limited;
     move(water, to_cloud, to_rain, end, did);
     return to_cloud + to_rain - total;
   }
