@@ -13,7 +13,7 @@ BUSY = {"domain.cells": "[10, 10, 10]", "time.end": "420 s", "output.checkpoint.
         "output.series.every": "10 s"}
 
 DRY = """\
-scene: {name: dry, title: Warm bubble in neutral air, in the plane}
+scene: {name: dry, title: Warm bubble in neutral air in the plane}
 domain: {extent: [1 km, 1 km], cells: [20, 20]}
 time: {end: 300 s}
 initial:
@@ -40,6 +40,8 @@ class TwoMoment(ProgramTest):
             with netCDF4.Dataset(dry.out / file) as a, netCDF4.Dataset(loaded.out / file) as b:
                 left, right = variables(a), variables(b)
                 for name, variable in left.items():
+                    if name == "scene":  # the text of the scene, which tells them apart
+                        continue
                     x, y = numpy.asarray(variable[...]), numpy.asarray(right[name][...])
                     self.assertEqual(x.tobytes(), y.tobytes(), f"{file}: {name}")
                     compared += 1
