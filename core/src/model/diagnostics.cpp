@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "coupling/quantity_plan.hpp"
 
 namespace pileus::model {
 namespace {
@@ -84,21 +85,8 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
     mean_vorticity_.push_back(
         add(three ? std::string("mean_") + "xyz"[c] + "_vorticity" : "mean_vorticity", "s-1",
             "domain-mean vorticity"));
-  bool holds_water = false;
-  for (std::size_t s = 0; s < store.scalars().size(); ++s) {
-    const parcels::Scalar& scalar = store.scalars()[s];
-    if (scalar.name == "buoyancy" || scalar.nature == parcels::Nature::derived) continue;
-    ScalarEntries entries{static_cast<int>(s), 0, 0, 0, false};
-    const bool conserved = scalar.nature == parcels::Nature::intensive;
-    entries.mean = add("mean_" + scalar.name, scalar.units, "domain mean", conserved);
-    entries.low = add("min_" + scalar.name, scalar.units, "smallest value of a parcel");
-    entries.high = add("max_" + scalar.name, scalar.units, "largest value of a parcel");
-    entries.water = scalar.budget == water_budget;
-    holds_water = holds_water || entries.water;
-    scalars_.push_back(entries);
-  }
+  add_scalar_measures(store);
   liquid_scalar_ = store.find_scalar(liquid_name);
-  if (holds_water) total_water_ = add("total_water", "1", "mean total water", true);
   if (liquid_scalar_ >= 0) {
     mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
     max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");
@@ -119,6 +107,25 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
       entries.push_back(add(name, units, text));
   }
   values_.assign(list_.size(), 0.0);
+}
+
+void Diagnostics::add_scalar_measures(const parcels::Store& store) {
+  bool holds_water = false;
+  for (std::size_t s = 0; s < store.scalars().size(); ++s) {
+    const parcels::Scalar& scalar = store.scalars()[s];
+    if (scalar.name == "buoyancy" || scalar.name == coupling::previous_height_name ||
+        scalar.nature == parcels::Nature::derived)
+      continue;
+    ScalarEntries entries{static_cast<int>(s), 0, 0, 0, false};
+    const bool conserved = scalar.nature == parcels::Nature::intensive;
+    entries.mean = add("mean_" + scalar.name, scalar.units, "domain mean", conserved);
+    entries.low = add("min_" + scalar.name, scalar.units, "smallest value of a parcel");
+    entries.high = add("max_" + scalar.name, scalar.units, "largest value of a parcel");
+    entries.water = scalar.budget == water_budget;
+    holds_water = holds_water || entries.water;
+    scalars_.push_back(entries);
+  }
+  if (holds_water) total_water_ = add("total_water", "1", "mean total water", true);
 }
 
 void Diagnostics::add_gridded_measures(const scene::Scene& scene, const Simulation& simulation) {

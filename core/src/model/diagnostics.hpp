@@ -43,6 +43,7 @@ class Diagnostics {
   void observe_parcels(Simulation& simulation);
   void observe_scalars(const Simulation& simulation);
   void observe_cloud(const Simulation& simulation);
+  void add_scalar_measures(const parcels::Store& store);
   void add_gridded_measures(const scene::Scene& scene, const Simulation& simulation);
   void observe_gridded_measures(Simulation& simulation);
 
