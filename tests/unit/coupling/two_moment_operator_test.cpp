@@ -116,7 +116,7 @@ TEST(TwoMomentOperator, has_the_same_bits_for_any_number_of_threads) {
 TEST(TwoMomentOperator, closes_the_books_of_water_and_of_droplets) {
   Layer layer({{"collection", one("khairoutdinov_kogan")}});
   const Ledger before = layer.sequence.ledger();
-  for (int i = 0; i < 60; ++i) layer.rise(i < 40 ? 15 : -25, 3);
+  for (int i = 0; i < 60; ++i) layer.rise(i < 40 ? 15 : -40, 3);
   const Ledger after = layer.sequence.ledger();
   const auto total = [](const Ledger& ledger, const char* name) {
     for (const BudgetTotal& t : ledger.totals)
