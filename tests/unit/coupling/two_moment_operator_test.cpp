@@ -113,29 +113,38 @@ TEST(TwoMomentOperator, has_the_same_bits_for_any_number_of_threads) {
   omp_set_num_threads(2);
 }
 
+double total_of(const Ledger& ledger, const std::string& name) {
+  for (const BudgetTotal& t : ledger.totals)
+    if (t.budget == name) return t.total;
+  return -1.0;
+}
+
 TEST(TwoMomentOperator, closes_the_books_of_water_and_of_droplets) {
   Layer layer({{"collection", one("khairoutdinov_kogan")}});
-  const Ledger before = layer.sequence.ledger();
-  for (int i = 0; i < 60; ++i) layer.rise(i < 40 ? 15 : -40, 3);
-  const Ledger after = layer.sequence.ledger();
-  const auto total = [](const Ledger& ledger, const char* name) {
-    for (const BudgetTotal& t : ledger.totals)
-      if (t.budget == name) return t.total;
-    return -1.0;
+  const auto water = [&] { return total_of(layer.sequence.ledger(), "water"); };
+  const auto droplets = [&] { return total_of(layer.sequence.ledger(), "droplets_and_aerosol"); };
+  const auto budget = [&](const std::string& name) {
+    const Ledger ledger = layer.sequence.ledger();
+    for (const OperatorBudget& b : ledger.operators.front().budgets)
+      if (b.budget == name) return b;
+    return OperatorBudget{};
   };
+  const double before = water();
+  for (int i = 0; i < 40; ++i) layer.rise(15, 3);
+  const double most = droplets();
+  EXPECT_GT(most, 0.0);
+  EXPECT_NEAR(budget("droplets_and_aerosol").change / most, 1.0, 1e-9);
+  EXPECT_NEAR(budget("droplets_and_aerosol").source / most, 1.0, 1e-9);
   // 60 steps of a few roundings each for 3000 parcels, of random sign.
-  EXPECT_NEAR(total(after, "water") / total(before, "water"), 1.0, 1e-15);
-  for (const OperatorBudget& budget : after.operators.front().budgets) {
-    if (budget.budget == "water") {
-      EXPECT_LE(std::abs(budget.change), 1e-15 * total(after, "water"));
-    } else {
-      EXPECT_GT(budget.source, 0.0);
-      EXPECT_NEAR(budget.change / budget.source, 1.0, 1e-9);
-      EXPECT_NEAR(total(after, budget.budget.c_str()) / budget.source, 1.0, 1e-9);
-    }
-  }
-  // Descent evaporated clouds: their droplets are gone, and the limiter that emptied them counted.
-  EXPECT_GT(after.operators.front().repairs, 0u);
+  EXPECT_NEAR(water() / before, 1.0, 1e-15);
+  EXPECT_LE(std::abs(budget("water").change), 1e-15 * before);
+  EXPECT_EQ(budget("water").source, 0.0);
+  // Descent evaporates all clouds: the droplets are gone, the limiter that emptied them counted.
+  for (int i = 0; i < 20; ++i) layer.rise(-65, 3);
+  EXPECT_EQ(droplets(), 0.0);
+  EXPECT_NEAR(budget("droplets_and_aerosol").source / most, 0.0, 1e-9);
+  EXPECT_NEAR(water() / before, 1.0, 1e-15);
+  EXPECT_GT(layer.sequence.ledger().operators.front().repairs, 0u);
 }
 
 TEST(TwoMomentOperator, accounts_for_an_ascent_once) {
