@@ -29,7 +29,8 @@ endif()
 add_library(pileus_build INTERFACE)
 target_compile_options(
   pileus_build INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                         -Wno-psabi -ffp-contract=off -fno-math-errno
+                         -Wno-psabi -fno-math-errno
+                         $<$<NOT:$<BOOL:$<TARGET_PROPERTY:PILEUS_FUSES_MULTIPLY_ADD>>>:-ffp-contract=off>
                          # GCC 12 warns about joining std::string temporaries for no reason
                          # (its bug 105651).
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
@@ -65,16 +66,17 @@ endfunction()
 
 # Vector kernels of a folder (src/<folder>/kernels/*.cpp) are compiled once per instruction set and
 # chosen at run time. Each copy lives in a namespace of its own (PILEUS_ISA), so that no inline
-# function of the wide version can be linked into the narrow one.
+# function of the wide version can be linked into the narrow one. They work on whole packs and have no
+# tails, so that products and sums may be fused: a parcel meets the same operations wherever it stands.
 function(pileus_add_kernels folder)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${folder}/kernels/*.cpp)
   if(NOT sources)
     return()
   endif()
   set(flags_baseline "")
-  set(flags_avx2 -mavx2 -mfma -mbmi2 -ffp-contract=fast)
+  set(flags_avx2 -mavx2 -mfma -mbmi2)
   set(flags_avx512 -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma -mbmi2
-                   -mprefer-vector-width=512 -ffp-contract=fast)
+                   -mprefer-vector-width=512)
   foreach(isa baseline avx2 avx512)
     set(target pileus_${folder}_${isa})
     add_library(${target} OBJECT ${sources})
@@ -82,6 +84,10 @@ function(pileus_add_kernels folder)
     target_link_libraries(${target} PRIVATE pileus_build)
     target_compile_definitions(${target} PRIVATE PILEUS_ISA=${isa})
     target_compile_options(${target} PRIVATE -Wno-psabi "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>" $<$<CONFIG:Debug>:-O2> ${flags_${isa}})
+    if(NOT isa STREQUAL "baseline")
+      set_target_properties(${target} PROPERTIES PILEUS_FUSES_MULTIPLY_ADD ON)
+      target_compile_options(${target} PRIVATE -ffp-contract=fast)
+    endif()
     target_sources(pileus_${folder} PRIVATE $<TARGET_OBJECTS:${target}>)
   endforeach()
 endfunction()

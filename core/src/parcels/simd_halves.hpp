@@ -78,17 +78,27 @@ static inline Pack square_root(Pack x) {
   return {_mm256_sqrt_pd(x.low), _mm256_sqrt_pd(x.high)};
 }
 
+/// Largest whole number not above x.
+static inline Pack round_down(Pack x) {
+  return {_mm256_floor_pd(x.low), _mm256_floor_pd(x.high)};
+}
 /// Largest integer not above x, as 32-bit integers; x must lie within ±2^31, other values give some
 /// integer.
 static inline IntPack floor_to_int(Pack x) {
-  const __m128i low = _mm256_cvttpd_epi32(_mm256_floor_pd(x.low));
-  const __m128i high = _mm256_cvttpd_epi32(_mm256_floor_pd(x.high));
+  const Pack whole = round_down(x);
+  const __m128i low = _mm256_cvttpd_epi32(whole.low), high = _mm256_cvttpd_epi32(whole.high);
   return reinterpret_cast<IntPack>(_mm256_set_m128i(high, low));
 }
 static inline Pack to_pack(IntPack i) {
   const __m256i all = reinterpret_cast<__m256i>(i);
   return {_mm256_cvtepi32_pd(_mm256_castsi256_si128(all)),
           _mm256_cvtepi32_pd(_mm256_extracti128_si256(all, 1))};
+}
+
+/// Bit per lane that holds zero.
+static inline unsigned zero_lanes(IntPack i) {
+  const __m256i zero = _mm256_cmpeq_epi32(reinterpret_cast<__m256i>(i), _mm256_setzero_si256());
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(zero)));
 }
 
 /// Does the condition hold in any lane?

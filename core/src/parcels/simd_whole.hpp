@@ -31,17 +31,43 @@ static inline Pack square_root(Pack x) {
 #endif
 }
 
-/// Largest integer not above x, as 32-bit integers; x must lie within ±2^31.
+/// Largest whole number not above x, as 32-bit integers; other values than x in ±2^31 give some
+/// integer.
 static inline IntPack floor_to_int(Pack x) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<IntPack>(
+      _mm512_cvttpd_epi32(_mm512_roundscale_pd(x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)));
+#else
   const IntPack truncated = __builtin_convertvector(x, IntPack);
   const Pack back = __builtin_convertvector(truncated, Pack);
   const IntPack one_too_high = __builtin_convertvector(back > x, IntPack);  // −1 where true
   // Modulo 2^32: a value beyond the range gives some integer, not undefined behaviour.
   return reinterpret_cast<IntPack>(reinterpret_cast<UnsignedPack>(truncated) +
                                    reinterpret_cast<UnsignedPack>(one_too_high));
+#endif
 }
 static inline Pack to_pack(IntPack i) {
   return __builtin_convertvector(i, Pack);
+}
+/// Largest whole number not above x.
+static inline Pack round_down(Pack x) {
+#if defined(__AVX512F__)
+  return _mm512_roundscale_pd(x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#else
+  return to_pack(floor_to_int(x));
+#endif
+}
+
+/// Bit per lane that holds zero.
+static inline unsigned zero_lanes(IntPack i) {
+#if defined(__AVX512F__)
+  const __m256i all = reinterpret_cast<__m256i>(i);
+  return _mm256_testn_epi32_mask(all, all);
+#else
+  unsigned bits = 0;
+  for (int lane = 0; lane < lanes; ++lane) bits |= unsigned(i[lane] == 0) << lane;
+  return bits;
+#endif
 }
 
 /// Does the condition hold in any lane?

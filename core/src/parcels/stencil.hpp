@@ -6,6 +6,7 @@
 #pragma once
 #include "parcels/ellipsoid.hpp"
 #include "parcels/kernel_grid.hpp"
+#include "parcels/simd_twin.hpp"
 
 namespace pileus::PILEUS_ISA {
 
@@ -26,7 +27,7 @@ static inline PeriodicIndex locate_periodic(Pack x, double lower, double inverse
                                             double inverse_n, std::int32_t cells) {
   Pack xi = (x - lower) * inverse_spacing;
   // Exact for any number of domain lengths away; rounding at the seam is caught by the clamp.
-  xi = xi - n * to_pack(floor_to_int(xi * inverse_n));
+  xi = xi - n * round_down(xi * inverse_n);
   PeriodicIndex index;
   index.low = floor_to_int(xi);
   // A value that is not a number lands in cell 0 instead of outside the mesh.
@@ -129,8 +130,7 @@ static inline void gather_points(Stencil<D>& stencil) {
   const IntPack first = *reinterpret_cast<const IntPack*>(stencil.node[0][0]);
   for (int s = 1; s < support_points<D>; ++s)
     apart |= first != *reinterpret_cast<const IntPack*>(stencil.node[s][0]);
-  stencil.together = 0;
-  for (int lane = 0; lane < lanes; ++lane) stencil.together |= unsigned(apart[lane] == 0) << lane;
+  stencil.together = zero_lanes(apart);
   for (int c = 0; c < 2 * corner_columns<D>; ++c) {
     Pack sum = *reinterpret_cast<const Pack*>(stencil.weight[0][c]);
     for (int s = 1; s < support_points<D>; ++s)
@@ -177,6 +177,10 @@ static inline Symmetric3<Pack> load_shape_3d(const double* const* shape, std::si
 static inline Symmetric2<Pack> load_shape_2d(const double* const* shape, std::size_t p) {
   return {load(shape[0] + p), load(shape[1] + p), load(shape[2] + p)};
 }
+static inline Symmetric3<Twin> load_shapes_3d(const double* const* shape, std::size_t p) {
+  return {load_twin(shape[0] + p), load_twin(shape[1] + p), load_twin(shape[2] + p),
+          load_twin(shape[3] + p), load_twin(shape[4] + p), load_twin(shape[5] + p)};
+}
 
 /// Support offsets of a few groups of parcels, computed ahead of their use: interleaved with the
 /// node accesses they would only wait for each other.
@@ -188,18 +192,26 @@ struct OffsetBlock {
 
   /// Of the parcels from `begin` on, up to `end` and at most as many as fit.
   void fill(const double* const* shape, std::size_t begin, std::size_t end) {
-    for (std::size_t n = 0; n < parcels && begin + n < end; n += lanes) {
-      if constexpr (D == 3) {
-        const auto o = support_offsets(load_shape_3d(shape, begin + n));
-        const Pack values[6] = {o.first.x,  o.first.y,  o.first.z,
-                                o.second.x, o.second.y, o.second.z};
-        for (int c = 0; c < 6; ++c) put(offset[c] + n, values[c]);
-      } else {
+    std::size_t n = 0;
+    const std::size_t count = end - begin < parcels ? end - begin : parcels;
+    if constexpr (D == 3) {
+      for (; n + lanes < count; n += 2 * lanes)
+        keep(n, support_offsets(load_shapes_3d(shape, begin + n)));
+      for (; n < count; n += lanes) keep(n, support_offsets(load_shape_3d(shape, begin + n)));
+    } else {
+      for (; n < count; n += lanes) {
         const auto o = support_offsets(load_shape_2d(shape, begin + n));
         put(offset[0] + n, o.x);
         put(offset[1] + n, o.z);
       }
     }
+  }
+
+ private:
+  template <class T>
+  void keep(std::size_t n, const SupportOffsets3<T>& o) {
+    const T values[6] = {o.first.x, o.first.y, o.first.z, o.second.x, o.second.y, o.second.z};
+    for (int c = 0; c < 6; ++c) store(offset[c] + n, values[c]);
   }
 };
 

@@ -61,9 +61,7 @@ unsigned lanes_inside(const DepositJob<D>& job, const Stencil<D>& stencil) {
       distance = distance < 0 ? distance + job.grid.cells[d] : distance;
       outside |= distance >= job.tile_count[d];
     }
-  unsigned inside = 0;
-  for (int lane = 0; lane < lanes; ++lane) inside |= unsigned(outside[lane] == 0) << lane;
-  return inside;
+  return zero_lanes(outside);
 }
 
 /// Records what one group of eight leaves out; returns the lanes to deposit.
@@ -79,9 +77,52 @@ unsigned sort_out_strays(DepositJob<D>& job, const Stencil<D>& stencil, std::siz
   return inside;
 }
 
+/// What consecutive parcels of one cell have for its nodes, on its way to the mesh: cells hold
+/// several parcels, and nodes are read and written once for all of them.
+class CellRun {
+ public:
+  explicit CellRun(double* field) : field_(field) {}
+  ~CellRun() { flush(); }
+  CellRun(const CellRun&) = delete;
+  CellRun& operator=(const CellRun&) = delete;
+
+  /// Adds a lane whose points all lie in one cell.
+  void add(const Stencil<3>& stencil, int lane, Pack value) {
+    if (stencil.node[0][0][lane] != node_[0]) {
+      flush();
+      for (int c = 0; c < columns; ++c) {
+        node_[c] = stencil.node[0][c][lane];
+        below_[c] = above_[c] = Pack{};
+      }
+    }
+    for (int c = 0; c < columns; ++c) {
+      below_[c] += stencil.weight_sum[2 * c][lane] * value;
+      above_[c] += stencil.weight_sum[2 * c + 1][lane] * value;
+    }
+  }
+
+ private:
+  static constexpr int columns = corner_columns<3>;
+
+  void flush() {
+    if (node_[0] < 0) return;
+    for (int c = 0; c < columns; ++c) {
+      Pack* node = reinterpret_cast<Pack*>(field_) + node_[c];
+      node[0] += below_[c];
+      node[1] += above_[c];
+    }
+    node_[0] = -1;
+  }
+
+  double* field_;
+  std::int32_t node_[columns] = {-1, -1, -1, -1};
+  Pack below_[columns], above_[columns];
+};
+
 void deposit_3d(DepositJob<3>& job) {
   Stencil<3> stencil;
   OffsetBlock<3> block;
+  CellRun run(job.field);
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     place_points(job, p, block, stencil);
     const unsigned inside = sort_out_strays<3>(job, stencil, p);
@@ -96,6 +137,10 @@ void deposit_3d(DepositJob<3>& job) {
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
       const Pack value = record[lane];
+      if (stencil.together >> lane & 1u) {
+        run.add(stencil, lane, value);
+        continue;
+      }
       for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
         Pack* node = reinterpret_cast<Pack*>(job.field) + at;
         node[0] += below * value;
@@ -131,22 +176,83 @@ void deposit_2d(DepositJob<2>& job) {
   }
 }
 
+/// Adds volume times weight to the nodes of one lane's points.
 template <int D>
-void deposit_volume(DepositJob<D>& job) {
-  Stencil<D> stencil;
-  OffsetBlock<D> block;
+void add_volume(const Stencil<D>& stencil, int lane, double volume, double* field) {
+  for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
+    double* node = field + at;
+    node[0] += below * volume;
+    node[1] += above * volume;
+  });
+}
+
+/// CellRun for the volume alone: all corners of a cell are one pack.
+class VolumeRun {
+ public:
+  explicit VolumeRun(double* field) : field_(field) {}
+  ~VolumeRun() { flush(); }
+  VolumeRun(const VolumeRun&) = delete;
+  VolumeRun& operator=(const VolumeRun&) = delete;
+
+  /// Adds a lane whose points all lie in one cell; `corners` are its weights times its volume.
+  void add(const Stencil<3>& stencil, int lane, Pack corners) {
+    if (stencil.node[0][0][lane] != node_[0]) {
+      flush();
+      for (int c = 0; c < columns; ++c) node_[c] = stencil.node[0][c][lane];
+      sum_ = Pack{};
+    }
+    sum_ += corners;
+  }
+
+ private:
+  static constexpr int columns = corner_columns<3>;
+
+  void flush() {
+    if (node_[0] < 0) return;
+    alignas(64) double corner[2 * columns];
+    put(corner, sum_);
+    for (int c = 0; c < columns; ++c) {
+      double* node = field_ + node_[c];
+      node[0] += corner[2 * c];
+      node[1] += corner[2 * c + 1];
+    }
+    node_[0] = -1;
+  }
+
+  double* field_;
+  std::int32_t node_[columns] = {-1, -1, -1, -1};
+  Pack sum_;
+};
+
+void deposit_volume_3d(DepositJob<3>& job) {
+  Stencil<3> stencil;
+  OffsetBlock<3> block;
+  VolumeRun run(job.field);
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     place_points(job, p, block, stencil);
-    const unsigned inside = sort_out_strays<D>(job, stencil, p);
+    const unsigned inside = sort_out_strays<3>(job, stencil, p);
+    const Pack volume = load(job.volume + p);
+    Pack corners[8];
+    for (int c = 0; c < 8; ++c) corners[c] = volume * load(stencil.weight_sum[c]);
+    transpose(corners);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!(inside >> lane & 1u)) continue;
-      const double volume = job.volume[p + lane];
-      for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
-        double* node = job.field + at;
-        node[0] += below * volume;
-        node[1] += above * volume;
-      });
+      if (stencil.together >> lane & 1u)
+        run.add(stencil, lane, corners[lane]);
+      else
+        add_volume(stencil, lane, job.volume[p + lane], job.field);
     }
+  }
+}
+
+void deposit_volume_2d(DepositJob<2>& job) {
+  Stencil<2> stencil;
+  OffsetBlock<2> block;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job, p, block, stencil);
+    const unsigned inside = sort_out_strays<2>(job, stencil, p);
+    for (int lane = 0; lane < lanes; ++lane)
+      if (inside >> lane & 1u) add_volume(stencil, lane, job.volume[p + lane], job.field);
   }
 }
 
@@ -184,42 +290,50 @@ void displace(const DisplaceJob<D>& job) {
 
 /// One direction of the gradient correction: the difference of the excess across the cell pushes
 /// the centre down the slope; f(1−f) keeps it in its cell, the clip keeps the map monotone.
-double compress_shift(double difference, double fraction, double spacing, double prefactor,
-                      double limit) {
-  double slope = prefactor * difference;
-  slope = slope > limit ? limit : slope;
-  slope = slope < -limit ? -limit : slope;
+template <class T>
+T compress_shift(T difference, T fraction, double spacing, double prefactor, double limit) {
+  const T zero = fraction * 0.0;
+  T slope = prefactor * difference;
+  slope = select(slope > limit, zero + limit, slope);
+  slope = select(slope < -limit, zero - limit, slope);
   return -spacing * fraction * (1.0 - fraction) * slope;
 }
 
 void compress_3d(const CompressJob<3>& job) {
   Stencil<3> stencil;
+  alignas(64) double corner[8][lanes];  // in the order of the stencil: columns, below and above
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     place_centre(job.grid, job.position, p, stencil);
-    const std::size_t left = job.end - p;
-    for (std::size_t lane = 0; lane < lanes && lane < left; ++lane) {
-      double e[8], w[8];  // corners in the order of the stencil: (x, y) columns, below and above
+    for (int lane = 0; lane < lanes; ++lane)
       for (int c = 0; c < 4; ++c) {
         const double* node = job.excess + stencil.node[0][c][lane];
-        e[2 * c] = node[0];
-        e[2 * c + 1] = node[1];
-        w[2 * c] = stencil.weight[0][2 * c][lane];
-        w[2 * c + 1] = stencil.weight[0][2 * c + 1][lane];
+        corner[2 * c][lane] = node[0];
+        corner[2 * c + 1][lane] = node[1];
       }
-      const double fx = w[2] + w[3] + w[6] + w[7], fy = w[4] + w[5] + w[6] + w[7],
-                   fz = w[1] + w[3] + w[5] + w[7];
-      const double gx = 1 - fx, gy = 1 - fy, gz = 1 - fz;
-      const double dx = gy * (gz * (e[2] - e[0]) + fz * (e[3] - e[1])) +
-                        fy * (gz * (e[6] - e[4]) + fz * (e[7] - e[5]));
-      const double dy = gx * (gz * (e[4] - e[0]) + fz * (e[5] - e[1])) +
-                        fx * (gz * (e[6] - e[2]) + fz * (e[7] - e[3]));
-      const double dz = gx * (gy * (e[1] - e[0]) + fy * (e[5] - e[4])) +
-                        fx * (gy * (e[3] - e[2]) + fy * (e[7] - e[6]));
-      const std::size_t q = p + lane;
-      job.position[0][q] += compress_shift(dx, fx, job.spacing[0], job.prefactor, job.limit);
-      job.position[1][q] += compress_shift(dy, fy, job.spacing[1], job.prefactor, job.limit);
-      job.position[2][q] += compress_shift(dz, fz, job.spacing[2], job.prefactor, job.limit);
+    Pack e[8], w[8];
+    for (int c = 0; c < 8; ++c) {
+      e[c] = load(corner[c]);
+      w[c] = load(stencil.weight[0][c]);
     }
+    const Pack fx = w[2] + w[3] + w[6] + w[7], fy = w[4] + w[5] + w[6] + w[7],
+               fz = w[1] + w[3] + w[5] + w[7];
+    const Pack gx = 1.0 - fx, gy = 1.0 - fy, gz = 1.0 - fz;
+    const Pack dx = gy * (gz * (e[2] - e[0]) + fz * (e[3] - e[1])) +
+                    fy * (gz * (e[6] - e[4]) + fz * (e[7] - e[5]));
+    const Pack dy = gx * (gz * (e[4] - e[0]) + fz * (e[5] - e[1])) +
+                    fx * (gz * (e[6] - e[2]) + fz * (e[7] - e[3]));
+    const Pack dz = gx * (gy * (e[1] - e[0]) + fy * (e[5] - e[4])) +
+                    fx * (gy * (e[3] - e[2]) + fy * (e[7] - e[6]));
+    const std::size_t left = job.end - p, count = left < lanes ? left : lanes;
+    const auto shift = [&](int d, Pack difference, Pack fraction) {
+      const Pack moved =
+          load(job.position[d] + p) +
+          compress_shift(difference, fraction, job.spacing[d], job.prefactor, job.limit);
+      __builtin_memcpy(job.position[d] + p, &moved, count * sizeof(double));
+    };
+    shift(0, dx, fx);
+    shift(1, dy, fy);
+    shift(2, dz, fz);
   }
 }
 
@@ -252,8 +366,8 @@ const parcels::Kernels parcel_kernels = {
     .support_offsets_2d = offsets_2d,
     .deposit_3d = deposit_3d,
     .deposit_2d = deposit_2d,
-    .deposit_volume_3d = deposit_volume<3>,
-    .deposit_volume_2d = deposit_volume<2>,
+    .deposit_volume_3d = deposit_volume_3d,
+    .deposit_volume_2d = deposit_volume_2d,
     .displace_3d = displace<3>,
     .displace_2d = displace<2>,
     .compress_3d = compress_3d,
