@@ -12,35 +12,34 @@ struct Twin {
   Pack first, second;
 };
 
-#define PILEUS_TWIN_OPERATOR(RESULT, OP)               \
-  static inline RESULT operator OP(Twin a, Twin b) {   \
+#define PILEUS_ARITHMETIC(OP)                          \
+  static inline Twin operator OP(Twin a, Twin b) {     \
     return {a.first OP b.first, a.second OP b.second}; \
   }                                                    \
-  static inline RESULT operator OP(Twin a, double b) { \
+  static inline Twin operator OP(Twin a, double b) {   \
     return {a.first OP b, a.second OP b};              \
+  }                                                    \
+  static inline Twin operator OP(double a, Twin b) {   \
+    return {a OP b.first, a OP b.second};              \
   }
-PILEUS_TWIN_OPERATOR(Twin, +)
-PILEUS_TWIN_OPERATOR(Twin, -)
-PILEUS_TWIN_OPERATOR(Twin, *)
-PILEUS_TWIN_OPERATOR(Twin, /)
-PILEUS_TWIN_OPERATOR(TwinMask, <)
-PILEUS_TWIN_OPERATOR(TwinMask, <=)
-PILEUS_TWIN_OPERATOR(TwinMask, >)
-PILEUS_TWIN_OPERATOR(TwinMask, >=)
-#undef PILEUS_TWIN_OPERATOR
+#define PILEUS_COMPARISON(OP)                            \
+  static inline TwinMask operator OP(Twin a, Twin b) {   \
+    return {a.first OP b.first, a.second OP b.second};   \
+  }                                                      \
+  static inline TwinMask operator OP(Twin a, double b) { \
+    return {a.first OP b, a.second OP b};                \
+  }
+PILEUS_ARITHMETIC(+)
+PILEUS_ARITHMETIC(-)
+PILEUS_ARITHMETIC(*)
+PILEUS_ARITHMETIC(/)
+PILEUS_COMPARISON(<)
+PILEUS_COMPARISON(<=)
+PILEUS_COMPARISON(>)
+PILEUS_COMPARISON(>=)
+#undef PILEUS_ARITHMETIC
+#undef PILEUS_COMPARISON
 
-static inline Twin operator+(double a, Twin b) {
-  return {a + b.first, a + b.second};
-}
-static inline Twin operator-(double a, Twin b) {
-  return {a - b.first, a - b.second};
-}
-static inline Twin operator*(double a, Twin b) {
-  return {a * b.first, a * b.second};
-}
-static inline Twin operator/(double a, Twin b) {
-  return {a / b.first, a / b.second};
-}
 static inline Twin operator-(Twin a) {
   return {-a.first, -a.second};
 }
