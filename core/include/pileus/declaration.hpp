@@ -87,6 +87,10 @@ class Declaration {
   Quantity derives(const char* name, const char* units) {
     return touches(name, units, PILEUS_WRITE | PILEUS_CREATE, PILEUS_DERIVED);
   }
+  /// One of the ground that it adds to: a number per column of cells. Only global operators may.
+  Quantity accumulates(const char* name, const char* units) {
+    return touches(name, units, PILEUS_ADD).place(PILEUS_SURFACE);
+  }
 
   Parameter number(const char* name, const char* units, double fallback) {
     return parameter(PILEUS_NUMBER, name, units, fallback);

@@ -84,6 +84,11 @@ class Block {
   const double* in(Slot slot) const { return dense<const double>(slot, PILEUS_READ); }
   /// Values of a quantity declared with updates, owns or derives.
   double* out(Slot slot) const { return dense<double>(slot, PILEUS_WRITE); }
+  /// Totals of a quantity of the ground declared with accumulates, to be added to: element
+  /// x + cells[0]·y belongs to that column of the mesh, and there are elements(slot) of them.
+  double* accumulator(Slot slot) const { return dense<double>(slot, PILEUS_ADD); }
+  /// Number of values of a quantity: parcels, or columns of the mesh for one of the ground.
+  std::int64_t elements(Slot slot) const { return raw_.views[slot.index].count; }
   /// The same for quantities with components or another element type.
   template <class T>
   Strided<const T> strided_in(Slot slot) const {

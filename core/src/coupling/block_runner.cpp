@@ -21,6 +21,7 @@ std::size_t count_outside(const double* x, std::size_t count, double low, double
 }
 
 /// Sets the result to a guard violation at the first bad value of a column, if there is one.
+/// Without `uid` the values are no parcels'.
 bool violates(const double* x, std::size_t count, std::span<const std::uint32_t> list,
               const BoundSlot& slot, std::size_t slot_number, const std::uint64_t* uid,
               host::CallResult& result) {
@@ -37,10 +38,16 @@ bool violates(const double* x, std::size_t count, std::span<const std::uint32_t>
   }
   result.status = PILEUS_E_NUMERIC;
   result.error.slot = static_cast<std::int32_t>(slot_number);
-  result.error.uid = uid[at];
+  result.error.uid = uid != nullptr ? uid[at] : 0;
   result.error.value = x[at];
-  std::snprintf(result.error.text, sizeof result.error.text,
-                "it wrote %.17g, allowed is [%.6g, %.6g]", x[at], slot.low, slot.high);
+  if (uid != nullptr) {
+    std::snprintf(result.error.text, sizeof result.error.text,
+                  "it wrote %.17g, allowed is [%.6g, %.6g]", x[at], slot.low, slot.high);
+  } else {
+    std::snprintf(result.error.text, sizeof result.error.text,
+                  "it brought column %zu of the surface to %.17g, allowed is [%.6g, %.6g]", at,
+                  x[at], slot.low, slot.high);
+  }
   return true;
 }
 
@@ -64,6 +71,13 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, boo
   std::vector<pileus_view>& views = work.views[which];
   for (std::size_t s = 0; s < views.size(); ++s) {
     const BoundSlot& slot = bound.slots[s];
+    if (slot.surface >= 0) {
+      const bool adds = slot.writable && !diagnosing;
+      views[s].access = adds ? PILEUS_READ | PILEUS_ADD : std::uint32_t{PILEUS_READ};
+      views[s].data = surface_.values(static_cast<std::size_t>(slot.surface)).data();
+      views[s].count = static_cast<std::int64_t>(surface_.columns());
+      continue;
+    }
     const int column = slot.column;
     const bool writable = slot.writable && slot.derived == diagnosing;
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
@@ -101,17 +115,31 @@ bool BlockRunner::diagnose(std::size_t which, const pileus_step& step, const Par
   return false;
 }
 
+/// Checks everything apply may have changed against its declared range.
+bool BlockRunner::writes_violate(const Attempt& a, std::span<const std::uint32_t> list,
+                                 host::CallResult& result) const {
+  for (const std::size_t s : a.bound.written) {
+    const BoundSlot& slot = a.bound.slots[s];
+    if (violates(store_.column(slot.column) + a.range.begin, a.range.count, list, slot, s,
+                 a.record.uid, result))
+      return true;
+  }
+  for (const std::size_t s : a.bound.accumulated) {
+    const BoundSlot& slot = a.bound.slots[s];
+    if (violates(surface_.values(static_cast<std::size_t>(slot.surface)).data(), surface_.columns(),
+                 {}, slot, s, nullptr, result))
+      return true;
+  }
+  return false;
+}
+
 host::CallResult BlockRunner::call_once(const Attempt& a, std::span<const std::uint32_t> list,
                                         const pileus_step& step) const {
   pileus_block record = a.record;
   record.active = list.empty() ? nullptr : list.data();
   if (!list.empty()) record.active_count = static_cast<std::int64_t>(list.size());
   host::CallResult result = a.bound.instance->apply(step, record, a.range.block);
-  for (std::size_t s : a.bound.written) {
-    if (!result.ok()) break;
-    violates(store_.column(a.bound.slots[s].column) + a.range.begin, a.range.count, list,
-             a.bound.slots[s], s, record.uid, result);
-  }
+  if (result.ok()) writes_violate(a, list, result);
   return result;
 }
 
@@ -181,6 +209,11 @@ void BlockRunner::snapshot(const Attempt& a) const {
     std::copy_n(store_.column(column) + a.range.begin, a.range.count,
                 a.work.snapshot.data() + w * a.work.snapshot_stride);
   }
+  for (std::size_t k = 0; k < a.bound.accumulated.size(); ++k) {
+    const int field = a.bound.slots[a.bound.accumulated[k]].surface;
+    std::copy_n(surface_.values(static_cast<std::size_t>(field)).data(), surface_.columns(),
+                a.work.surface_snapshot.data() + k * surface_.columns());
+  }
 }
 
 void BlockRunner::restore(const Attempt& a, std::span<const std::uint32_t> list) const {
@@ -192,6 +225,12 @@ void BlockRunner::restore(const Attempt& a, std::span<const std::uint32_t> list)
     } else {
       for (const std::uint32_t i : list) now[i] = before[i];
     }
+  }
+  // Only calls with all parcels add to the surface, so that it goes back as a whole.
+  for (std::size_t k = 0; k < a.bound.accumulated.size(); ++k) {
+    const int field = a.bound.slots[a.bound.accumulated[k]].surface;
+    std::copy_n(a.work.surface_snapshot.data() + k * surface_.columns(), surface_.columns(),
+                surface_.values(static_cast<std::size_t>(field)).data());
   }
 }
 

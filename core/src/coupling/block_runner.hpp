@@ -30,8 +30,8 @@ struct ParcelRange {
 class BlockRunner {
  public:
   BlockRunner(const std::vector<BoundOperator>& operators, parcels::Store& store,
-              const pileus_grid* grid)
-      : operators_(operators), store_(store), grid_(grid) {}
+              SurfaceFields& surface, const pileus_grid* grid)
+      : operators_(operators), store_(store), surface_(surface), grid_(grid) {}
 
   /// Runs the diagnose hook of operator `which`. False: work.failure was set; what it derived is
   /// not to be used.
@@ -53,6 +53,8 @@ class BlockRunner {
   host::CallResult call_once(const Attempt& a, std::span<const std::uint32_t> list,
                              const pileus_step& step) const;
   bool try_level(Attempt& a, std::span<const std::uint32_t> list, int level) const;
+  bool writes_violate(const Attempt& a, std::span<const std::uint32_t> list,
+                      host::CallResult& result) const;
   bool advance(Attempt& a, std::span<const std::uint32_t> list, int level) const;
   void snapshot(const Attempt& a) const;
   void restore(const Attempt& a, std::span<const std::uint32_t> list) const;
@@ -62,6 +64,7 @@ class BlockRunner {
 
   const std::vector<BoundOperator>& operators_;
   parcels::Store& store_;
+  SurfaceFields& surface_;
   const pileus_grid* grid_;
 };
 

@@ -11,7 +11,16 @@
 namespace pileus::coupling {
 namespace {
 
-void bind_slots(BoundOperator& bound, const parcels::Store& store) {
+/// Binds a quantity of the surface, which the plan has seen to exist.
+void bind_surface_slot(BoundOperator& bound, std::size_t number, const parcels::Store& store,
+                       const SurfaceFields& surface, BoundSlot& slot) {
+  slot.surface = surface.find(bound.entry->table->quantities[number].name);
+  if ((bound.entry->table->quantities[number].access & PILEUS_READ) != 0)
+    bound.read_columns.push_back(store.column_count() + slot.surface);
+  if (slot.writable) bound.accumulated.push_back(number);
+}
+
+void bind_slots(BoundOperator& bound, const parcels::Store& store, const SurfaceFields& surface) {
   const host::OperatorTable& table = *bound.entry->table;
   for (std::size_t i = 0; i < table.quantities.size(); ++i) {
     const pileus_quantity& row = table.quantities[i];
@@ -20,7 +29,10 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store) {
     slot.high = row.high;
     slot.derived = row.nature == PILEUS_DERIVED;
     slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
-    if (host::holds(table.quantity_when[i], bound.entry->values.numbers())) {
+    const bool exists = host::holds(table.quantity_when[i], bound.entry->values.numbers());
+    if (exists && row.place == PILEUS_SURFACE) {
+      bind_surface_slot(bound, i, store, surface, slot);
+    } else if (exists) {
       slot.column = find_column(store, row.name);
       const bool absent = slot.column < 0 && row.name == std::string_view("y_position");
       if (absent) {  // the plane has no y: the slot does not exist
@@ -77,7 +89,8 @@ void bind_budgets(BoundOperator& bound) {
 }  // namespace
 
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
-                            std::uint32_t stream, const std::atomic<bool>* stop) {
+                            const SurfaceFields& surface, std::uint32_t stream,
+                            const std::atomic<bool>* stop) {
   const std::uint32_t scope = entry.table->op.scope;
   if (scope != PILEUS_LOCAL && scope != PILEUS_GLOBAL) {
     throw Error(ExitCode::plugin,
@@ -88,7 +101,7 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   BoundOperator bound;
   bound.entry = &entry;
   bound.stream = stream;
-  bind_slots(bound, store);
+  bind_slots(bound, store, surface);
   bind_conditions(bound);
   bind_budgets(bound);
   bound.instance = std::make_unique<host::Instance>(entry.table, stop);

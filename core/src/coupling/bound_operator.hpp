@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "coupling/operator_entry.hpp"
+#include "coupling/surface_fields.hpp"
 #include "host/instance.hpp"
 #include "parcels/store.hpp"
 
 namespace pileus::coupling {
 
-/// A declared quantity and the column it stands for.
+/// A declared quantity and the column of the store or the surface field it stands for.
 struct BoundSlot {
-  int column = -1;       // −1: does not exist in this run
+  int column = -1;       // −1: no quantity of the parcels, or it does not exist in this run
+  int surface = -1;      // position among the surface fields; −1: none of them
   bool derived = false;  // written by diagnose; every other writable slot by apply
   bool writable = false;
   double low = 0, high = 0;
@@ -39,18 +41,22 @@ struct BoundOperator {
   std::vector<BoundSlot> slots;            // by slot number
   std::vector<std::size_t> written;        // slots that apply writes
   std::vector<std::size_t> derived;        // slots that diagnose writes
+  std::vector<std::size_t> accumulated;    // slots of the surface that apply adds to
   std::vector<BoundCondition> conditions;  // sorted by clause; empty: always active
   std::vector<BudgetedSlot> budgeted;
-  std::vector<int> read_columns;  // whose change makes diagnose or the conditions stale
+  /// Whose change makes diagnose or the conditions stale: columns of the store, and the surface
+  /// fields counted on from there.
+  std::vector<int> read_columns;
 
   const pileus_operator& op() const { return entry->table->op; }
   bool is_local() const { return op().scope == PILEUS_LOCAL; }
 };
 
-/// Binds an operator to the store's columns.
+/// Binds an operator to the store's columns and to the surface.
 /// Errors  Error(ExitCode::usage) if a quantity has no column in this store (y_position in 2D), or
 ///         the scope is not offered
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
-                            std::uint32_t stream, const std::atomic<bool>* stop);
+                            const SurfaceFields& surface, std::uint32_t stream,
+                            const std::atomic<bool>* stop);
 
 }  // namespace pileus::coupling

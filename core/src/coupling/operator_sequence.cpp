@@ -78,6 +78,7 @@ OperatorSequence::OperatorSequence(std::vector<OperatorEntry> operators, Sequenc
     : operators_(std::move(operators)), options_(std::move(options)) {
   check_names(operators_);
   plan_ = plan_quantities(operators_, options_.initial);
+  surface_ = SurfaceFields(plan_.surface);
   order_ = resolve_order(operators_, options_.coupling.order);
 }
 
@@ -98,10 +99,11 @@ std::vector<std::string> OperatorSequence::order() const {
 void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_grid>& grid) {
   store_ = &store;
   grid_ = grid;
+  surface_.start(grid ? static_cast<std::size_t>(grid->cells[0] * grid->cells[1]) : 1);
   bound_.clear();
   progress_.clear();
   for (const OperatorEntry& entry : operators_) {
-    bound_.push_back(bind_operator(entry, store, stream_of(entry.name), options_.stop));
+    bound_.push_back(bind_operator(entry, store, surface_, stream_of(entry.name), options_.stop));
     OperatorProgress& progress = progress_.emplace_back();
     for (const BoundCondition& c : bound_.back().conditions) {
       progress.condition_columns.push_back(c.column);
@@ -109,8 +111,9 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
     progress.change.resize(entry.table->budgets.size());
     progress.source.resize(entry.table->budgets.size());
   }
-  runner_ = std::make_unique<BlockRunner>(bound_, store, grid_ ? &*grid_ : nullptr);
-  versions_.assign(static_cast<std::size_t>(store.column_count()), next_version_++);
+  runner_ = std::make_unique<BlockRunner>(bound_, store, surface_, grid_ ? &*grid_ : nullptr);
+  versions_.assign(static_cast<std::size_t>(store.column_count()) + surface_.list().size(),
+                   next_version_++);
   previous_height_ = find_column(store, previous_height_name);
   workspaces_.clear();
   stale_.reserve(plan_.closures.size());
@@ -136,7 +139,10 @@ void OperatorSequence::resume(const StepTime& step) {
 
 void OperatorSequence::start(const StepTime& step, bool new_run) {
   prepare_workspaces();
-  if (new_run) remember_heights();
+  if (new_run) {
+    surface_.start(surface_.columns());
+    remember_heights();
+  }
   for (std::size_t which = 0; which < bound_.size(); ++which) {
     BoundOperator& bound = bound_[which];
     if (!new_run) {
@@ -171,6 +177,7 @@ void OperatorSequence::prepare_workspaces() {
   const bool any_global = std::any_of(bound_.begin(), bound_.end(),
                                       [](const BoundOperator& b) { return !b.is_local(); });
   whole_.reserve(bound_, any_global ? store_->size() : 0);
+  whole_.reserve_surface(bound_, surface_.columns());
   std::size_t budgets = 0;
   for (const OperatorEntry& entry : operators_) {
     budgets = std::max(budgets, entry.table->budgets.size());
@@ -391,6 +398,10 @@ void OperatorSequence::close_books(std::size_t which, std::size_t blocks) {
   }
   for (const std::size_t s : bound.written) {
     versions_[static_cast<std::size_t>(bound.slots[s].column)] = next_version_;
+  }
+  for (const std::size_t s : bound.accumulated) {
+    const int field = store_->column_count() + bound.slots[s].surface;
+    versions_[static_cast<std::size_t>(field)] = next_version_;
   }
   ++next_version_;
 }

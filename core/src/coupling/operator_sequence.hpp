@@ -67,6 +67,10 @@ class OperatorSequence {
 
   /// The scalars to build the store with.
   const std::vector<parcels::Scalar>& required_scalars() const { return plan_.scalars; }
+  /// The declared quantities of the surface; empty of values before bind(). Whoever restores them
+  /// does so before resume().
+  SurfaceFields& surface() { return surface_; }
+  const SurfaceFields& surface() const { return surface_; }
   /// True if an operator derives the buoyancy; else it is carried by the parcels.
   bool derives_buoyancy() const;
   bool empty() const { return operators_.empty(); }
@@ -74,7 +78,8 @@ class OperatorSequence {
   /// Names of the operators with an apply hook, outermost first.
   std::vector<std::string> order() const;
 
-  /// Creates and configures the instances on the columns of `store`, which must outlive this.
+  /// Creates and configures the instances on the columns of `store`, which must outlive this. The
+  /// surface has the columns of `grid`; a box without one stands on a single column.
   /// Errors  Error(ExitCode::plugin) if a plugin refuses its parameters
   void bind(parcels::Store& store, const std::optional<pileus_grid>& grid);
 
@@ -130,6 +135,7 @@ class OperatorSequence {
   SequenceOptions options_;
   QuantityPlan plan_;
   std::vector<std::size_t> order_;  // operators with apply, outermost first
+  SurfaceFields surface_;
   parcels::Store* store_ = nullptr;
   std::optional<pileus_grid> grid_;
   int previous_height_ = -1;  // column, if an operator asks for it
@@ -141,7 +147,7 @@ class OperatorSequence {
   std::vector<OperatorProgress> progress_;  // per operator
   std::vector<BlockBooks> block_books_;     // per block and budget of the present call
   std::vector<std::uint8_t> block_active_;  // per block: the present call did something
-  std::vector<std::uint64_t> versions_;     // per column, raised when it changes
+  std::vector<std::uint64_t> versions_;     // per column and surface field, raised by changes
   std::uint64_t next_version_ = 1;
 };
 

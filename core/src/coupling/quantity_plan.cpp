@@ -26,6 +26,12 @@ struct Claim {
 struct Claims {
   std::vector<std::string> names;
   std::map<std::string, std::vector<Claim>> of;
+
+  bool know(const std::string& name) const { return of.find(name) != of.end(); }
+  void add(const Claim& claim) {
+    if (!know(claim.row->name)) names.emplace_back(claim.row->name);
+    of[claim.row->name].push_back(claim);
+  }
 };
 
 class Planner {
@@ -37,14 +43,17 @@ class Planner {
     collect();
     for (const std::string& name : initial_) check_name(name, "the initial state");
     QuantityPlan plan;
-    if (claims_.of.find(buoyancy_name) == claims_.of.end()) {
+    if (!claims_.know(buoyancy_name)) {
       plan.scalars.push_back(passive(buoyancy_name));
     }
     for (const std::string& name : claims_.names) plan.scalars.push_back(unite(name));
     for (const std::string& name : initial_) {
-      if (claims_.of.find(name) == claims_.of.end() && name != buoyancy_name) {
+      if (!claims_.know(name) && name != buoyancy_name) {
         plan.scalars.push_back(passive(name));
       }
+    }
+    for (const std::string& name : surface_claims_.names) {
+      plan.surface.push_back(unite_on_surface(name));
     }
     plan.closures = order_closures();
     if (!problems_.empty()) throw Error(ExitCode::usage, problems_);
@@ -60,10 +69,10 @@ class Planner {
       for (std::size_t i = 0; i < table.quantities.size(); ++i) {
         const pileus_quantity& row = table.quantities[i];
         if (!host::holds(table.quantity_when[i], entry.values.numbers())) continue;
-        if (!check_support(entry, row) || is_core_quantity(row.name)) continue;
+        if (!check_support(entry, row)) continue;
+        if (row.place == PILEUS_PARCEL && is_core_quantity(row.name)) continue;
         check_units(entry, row);
-        if (claims_.of.find(row.name) == claims_.of.end()) claims_.names.emplace_back(row.name);
-        claims_.of[row.name].push_back({&entry, &row});
+        (row.place == PILEUS_SURFACE ? surface_claims_ : claims_).add({&entry, &row});
       }
     }
   }
@@ -74,7 +83,8 @@ class Planner {
                            entry.name, row.name, what));
       return false;
     };
-    if (row.place != PILEUS_PARCEL) return refuse("elsewhere than on the parcels");
+    if (row.place == PILEUS_SURFACE) return check_surface_support(entry, row);
+    if (row.place != PILEUS_PARCEL) return refuse("elsewhere than on the parcels or the surface");
     if (row.type != PILEUS_F64 || row.components != 1) {
       return refuse("as something other than one double-precision number per parcel");
     }
@@ -84,6 +94,25 @@ class Planner {
     }
     if (row.nature == PILEUS_INTENSIVE && std::string_view(row.weight) != volume_name) {
       return refuse("with a weight other than the volume");
+    }
+    return true;
+  }
+
+  bool check_surface_support(const OperatorEntry& entry, const pileus_quantity& row) {
+    const auto refuse = [&](const char* why) {
+      complain(
+          fmt::format("operator '{}' declares '{}' on the surface {}", entry.name, row.name, why));
+      return false;
+    };
+    if (row.type != PILEUS_F64 || row.components != 1) {
+      return refuse("as something other than one double-precision number per column of cells");
+    }
+    if ((row.access & PILEUS_WRITE) != 0) return refuse("to overwrite it; it can be added to");
+    const bool adds = (row.access & (PILEUS_ADD | PILEUS_CREATE)) != 0;
+    if (adds && entry.table->op.scope != PILEUS_GLOBAL) {
+      return refuse(
+          "to add to it from blocks that run side by side, in no fixed order; its scope has to be "
+          "global");
     }
     return true;
   }
@@ -121,10 +150,8 @@ class Planner {
                                       : parcels::Nature::intensive;
   }
 
-  parcels::Scalar unite(const std::string& name) {
-    const std::vector<Claim>& claims = claims_.of.at(name);
+  const Claim* find_owner(const std::string& name, const std::vector<Claim>& claims) {
     const Claim* owner = nullptr;
-    const Claim* decisive = nullptr;  // the owner, or else the first that states a nature
     for (const Claim& claim : claims) {
       if (claim.creates()) {
         if (owner != nullptr) {
@@ -134,6 +161,31 @@ class Planner {
         owner = &claim;
       }
     }
+    return owner;
+  }
+
+  SurfaceQuantity unite_on_surface(const std::string& name) {
+    const std::vector<Claim>& claims = surface_claims_.of.at(name);
+    if (is_core_quantity(name) || claims_.know(name) || initial_.count(name) > 0) {
+      complain(fmt::format("operator '{}' declares '{}' on the surface, but parcels carry it",
+                           claims.front().by->name, name));
+    }
+    const bool provided = std::any_of(claims.begin(), claims.end(), [](const Claim& claim) {
+      return (claim.row->access & (PILEUS_ADD | PILEUS_CREATE)) != 0;
+    });
+    if (!provided) {
+      complain(
+          fmt::format("operator '{}' reads '{}' on the surface, which no operator adds to or owns",
+                      claims.front().by->name, name));
+    }
+    const Claim* owner = find_owner(name, claims);
+    return {name, claims.front().row->units, owner != nullptr ? owner->row->initial : 0.0};
+  }
+
+  parcels::Scalar unite(const std::string& name) {
+    const std::vector<Claim>& claims = claims_.of.at(name);
+    const Claim* owner = find_owner(name, claims);
+    const Claim* decisive = nullptr;  // the owner, or else the first that states a nature
     for (const Claim& claim : claims) {
       if (decisive == nullptr && claim.row->nature != 0) decisive = &claim;
     }
@@ -216,7 +268,7 @@ class Planner {
 
   const std::vector<OperatorEntry>& operators_;
   std::set<std::string> initial_;
-  Claims claims_;
+  Claims claims_, surface_claims_;
   std::string problems_;
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupling/operator_entry.hpp"
+#include "coupling/surface_fields.hpp"
 #include "parcels/store.hpp"
 
 namespace pileus::coupling {
@@ -22,6 +23,7 @@ inline constexpr const char* previous_height_name = "previous_height";
 /// What the sequence of operators asks of the parcels.
 struct QuantityPlan {
   std::vector<parcels::Scalar> scalars;  // in the order of their declaration
+  std::vector<SurfaceQuantity> surface;  // likewise
   std::vector<std::size_t> closures;     // operators with diagnose, providers before readers
 };
 
@@ -30,6 +32,7 @@ struct QuantityPlan {
 /// `initial` are the scalars the scene's initial state sets. Rules: names are registered and their
 /// units are the registered ones; a quantity has one owner; derived quantities are not set by the
 /// initial state; what is read is owned or set; natures and budgets agree; closures form no ring.
+/// Quantities of the surface: any number of global operators may add to one, anybody may read it.
 ///
 /// Errors  Error(ExitCode::usage) with every violation, each naming operator, quantity and remedy
 QuantityPlan plan_quantities(const std::vector<OperatorEntry>& operators,

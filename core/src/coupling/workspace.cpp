@@ -41,4 +41,12 @@ void Workspace::reserve(const std::vector<BoundOperator>& operators, std::size_t
   std::iota(everyone.begin(), everyone.end(), 0u);
 }
 
+void Workspace::reserve_surface(const std::vector<BoundOperator>& operators, std::size_t columns) {
+  std::size_t fields = 0;
+  for (const BoundOperator& bound : operators) fields = std::max(fields, bound.accumulated.size());
+  if (surface_snapshot.size() < fields * columns) {
+    surface_snapshot.discard_and_resize(fields * columns);
+  }
+}
+
 }  // namespace pileus::coupling

@@ -47,6 +47,7 @@ struct alignas(cache_line_bytes) Workspace {
   std::vector<std::vector<pileus_view>> views;  // per operator, static members filled in
   AlignedArray<double> snapshot;                // of the written columns, one after another
   std::size_t snapshot_stride = 0;              // parcels per column in it
+  AlignedArray<double> surface_snapshot;        // of the surface fields added to
   std::vector<std::uint32_t> active, everyone;  // index lists of up to a block
   std::vector<std::uint8_t> mask, clause_mask;
   std::vector<double> ledger, attempt;             // sources: of the block, of the present attempt
@@ -55,6 +56,8 @@ struct alignas(cache_line_bytes) Workspace {
 
   /// Makes room for blocks of `parcels`; allocates only when that grows.
   void reserve(const std::vector<BoundOperator>& operators, std::size_t parcels);
+  /// Makes room for the surface of a call with all parcels.
+  void reserve_surface(const std::vector<BoundOperator>& operators, std::size_t columns);
 };
 
 }  // namespace pileus::coupling

@@ -42,9 +42,20 @@ struct StageJob {
   std::size_t broken;  // out: parcels whose shape lost positive definiteness and was reset
 };
 
+/// The same stage with the flow given at the parcels instead of on the mesh: element p − begin of
+/// each array belongs to parcel p, with room up to the next multiple of 8. The gradient is row by
+/// row without w_z (2D: u_x, u_z, w_x). Vorticity is left alone; `flow` and `offset` are not used.
+template <int D>
+struct GivenStageJob : StageJob<D> {
+  const double* velocity[D];
+  const double* gradient[StageJob<D>::gradient_components];
+};
+
 struct Kernels {
   void (*stage_3d)(StageJob<3>&);
   void (*stage_2d)(StageJob<2>&);
+  void (*given_stage_3d)(GivenStageJob<3>&);
+  void (*given_stage_2d)(GivenStageJob<2>&);
 };
 
 const Kernels& kernels();

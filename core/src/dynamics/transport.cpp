@@ -6,8 +6,6 @@
 namespace pileus::dynamics {
 namespace {
 
-constexpr std::size_t read_ahead = 8;
-
 void run_stage(StageJob<3>& job) {
   kernels().stage_3d(job);
 }
@@ -49,46 +47,12 @@ template <int D>
 Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
                         const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
                         ReferenceProfile reference)
-    : grid_(grid),
+    : ParcelMotion<D>(grid, scheme, shape, std::move(reference)),
       coriolis_(coriolis),
-      scheme_(scheme),
-      shape_(shape),
-      reference_(std::move(reference)),
-      deposit_(grid),
       solver_(grid, flow),
       sharpen_deposited_(grid, mesh::DepositRecord<D>::width, mesh::DepositRecord<D>::vorticity,
                          mesh::DepositRecord<D>::buoyancy + 1, sharpening),
-      sharpen_flow_(grid, mesh::FlowRecord<D>::width, 0, mesh::FlowRecord<D>::width, sharpening),
-      deposited_(grid.nodes() * mesh::DepositRecord<D>::width),
-      flow_(grid.nodes() * mesh::FlowRecord<D>::width),
-      offsets_(lent_arrays()) {}
-
-/// Position increments first, then the shape's.
-template <int D>
-std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components>
-Transport<D>::lent_arrays() {
-  std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components> arrays;
-  for (std::size_t c = 0; c < arrays.size(); ++c)
-    arrays[c] = c < D ? &position_increment_[c] : &shape_increment_[c - D];
-  return arrays;
-}
-
-template <int D>
-void Transport<D>::reserve(std::size_t parcels) {
-  // Room for growth, so that the parcel count may vary for many steps without an allocation. Each
-  // array is looked at: sorting swaps some of them for others.
-  const std::size_t room = parcels + parcels / 32 + read_ahead;
-  const auto provide = [&](AlignedArray<double>& array) {
-    if (array.size() < parcels + read_ahead) array.discard_and_resize(room);
-  };
-  for (auto& array : position_increment_) provide(array);
-  for (auto& array : vorticity_increment_) provide(array);
-  const std::size_t used = shape_ == ShapeIntegrator::exponential
-                               ? shape_increment_.size()
-                               : std::size_t(StageJob<D>::shape_components);
-  for (std::size_t c = 0; c < used; ++c) provide(shape_increment_[c]);
-  if (!reference_.is_linear()) provide(perturbation_);
-}
+      sharpen_flow_(grid, mesh::FlowRecord<D>::width, 0, mesh::FlowRecord<D>::width, sharpening) {}
 
 template <int D>
 const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancySource& source,
@@ -100,24 +64,10 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
   {
     const PhaseScope scope(times, Phase::closure);
     buoyancy = source.buoyancy(store, time);
-    if (!reference_.is_linear()) {
-      const double* z = store.position(D - 1);
-      parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) perturbation_[p] = buoyancy[p] - reference_(z[p]);
-      });
-      buoyancy = perturbation_.data();
-    }
   }
   {
     const PhaseScope scope(times, Phase::deposit);
-    std::vector<const double*>& values = deposit_values_;
-    values.clear();
-    for (int c = 0; c < store.vorticity_components(); ++c) values.push_back(store.vorticity(c));
-    values.push_back(buoyancy);
-    parcels::LinearReference reference;
-    if (!reference_.is_zero() && reference_.is_linear())
-      reference = {store.vorticity_components(), reference_.intercept(), reference_.slope()};
-    empty_nodes_ = deposit_.means(store, tile_begin, values, reference, deposited_.data());
+    deposit_state(store, buoyancy, tile_begin);
   }
   {
     const PhaseScope scope(times, Phase::compensation);
@@ -133,27 +83,8 @@ void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, d
                          bool evaluate_only, PhaseTimes& times) {
   sharpen_flow(times);
   const PhaseScope scope(times, Phase::interpolate);
-  StageJob<D> whole{};
-  whole.grid = parcels::make_kernel_grid(grid_);
+  StageJob<D> whole = stage_job(store, s, dt, evaluate_only);
   whole.flow = flow_.data();
-  for (int d = 0; d < D; ++d) {
-    whole.position[d] = store.position(d);
-    whole.position_increment[d] = position_increment_[static_cast<std::size_t>(d)].data();
-  }
-  for (int c = 0; c < StageJob<D>::vorticity_components; ++c) {
-    whole.vorticity[c] = store.vorticity(c);
-    whole.vorticity_increment[c] = vorticity_increment_[static_cast<std::size_t>(c)].data();
-  }
-  for (int c = 0; c < StageJob<D>::shape_components; ++c) whole.shape[c] = store.shape(c);
-  for (int c = 0; c < StageJob<D>::gradient_components; ++c)
-    whole.shape_increment[c] = shape_increment_[static_cast<std::size_t>(c)].data();
-  whole.volume = store.volume();
-  whole.keep = scheme_.a[s];
-  whole.advance = evaluate_only ? 0.0 : scheme_.b[s] * dt;
-  whole.first = s == 0;
-  whole.last = s + 1 == scheme_.stages();
-  whole.evaluate_only = evaluate_only;
-  whole.shape_integrator = shape_;
   broken_shapes_ += ordered_reduce(
       store.size(), std::size_t{0},
       [&](std::size_t begin, std::size_t end) {
@@ -238,12 +169,7 @@ void Transport<D>::probe(parcels::Store& store, PhaseTimes& times) {
 
 template <int D>
 std::size_t Transport<D>::allocated_bytes() const {
-  std::size_t bytes = deposited_.allocated_bytes() + flow_.allocated_bytes() +
-                      perturbation_.allocated_bytes() + deposit_.allocated_bytes();
-  for (const auto& a : position_increment_) bytes += a.allocated_bytes();
-  for (const auto& a : vorticity_increment_) bytes += a.allocated_bytes();
-  for (const auto& a : shape_increment_) bytes += a.allocated_bytes();
-  return bytes;
+  return ParcelMotion<D>::allocated_bytes() + solver_.allocated_bytes();
 }
 
 template class Transport<2>;

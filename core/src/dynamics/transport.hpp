@@ -1,110 +1,57 @@
 // What the core integrates itself: position, vorticity and shape of the parcels in the flow they
-// induce, by the stages of a low-storage Runge–Kutta scheme.
+// induce.
 #pragma once
 #include <array>
 #include <vector>
 
-#include "base/aligned_array.hpp"
-#include "base/phase_timer.hpp"
-#include "dynamics/kernels.hpp"
-#include "dynamics/reference_profile.hpp"
-#include "dynamics/runge_kutta.hpp"
+#include "dynamics/parcel_motion.hpp"
 #include "mesh/flow_solver.hpp"
 #include "mesh/sharpening.hpp"
-#include "parcels/deposit.hpp"
-#include "parcels/store.hpp"
 
 namespace pileus::dynamics {
 
-/// Where the buoyancy of the parcels comes from: a stored quantity, or closures evaluated for the
-/// present heights.
-class BuoyancySource {
- public:
-  virtual ~BuoyancySource() = default;
-  /// Buoyancy of every parcel (m s⁻²) for the store's present state at `time` (s).
-  virtual const double* buoyancy(parcels::Store& store, double time) = 0;
-};
-
-/// Horizontal mean of the velocity over the whole domain, which vorticity does not determine.
-struct MeanWind {
-  std::array<double, 2> velocity{0, 0};   // m s⁻¹: x, y
-  std::array<double, 2> increment{0, 0};  // of the Runge–Kutta scheme
-};
-
 template <int D>
-class Transport {
+class Transport final : public ParcelMotion<D> {
  public:
   /// `sharpening` is the strength β of mesh::Sharpening, 0 for none.
   Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
             const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
             ReferenceProfile reference);
 
-  /// Deposits the state and solves for its flow; the summary is of this state. `tile_begin` are the
-  /// parcel ranges of the deposit's tiles and must stay valid until finish_step().
+  /// Deposits the state and solves for its flow.
   const mesh::FlowSummary& evaluate(parcels::Store& store, BuoyancySource& source,
                                     const std::vector<std::size_t>& tile_begin,
-                                    const MeanWind& wind, double time, PhaseTimes& times);
-
-  /// First stage of a step of `dt` from the state just evaluated.
-  void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times);
-  /// Velocity of every parcel (m s⁻¹) at the state of the last evaluate(); valid between
-  /// begin_step() or probe() and the next stage.
-  const double* velocity(int direction) const { return position_increment_[direction].data(); }
-  /// All remaining stages; then confines the parcels to the domain and settles the net vorticity.
+                                    const MeanWind& wind, double time, PhaseTimes& times) override;
+  void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) override;
+  /// Also settles the net vorticity.
   void finish_step(parcels::Store& store, BuoyancySource& source,
                    const std::vector<std::size_t>& tile_begin, MeanWind& wind, double time,
-                   double dt, PhaseTimes& times);
+                   double dt, PhaseTimes& times) override;
+  /// This and the first stage prepare the flow for being interpolated, so that it is no longer the
+  /// evaluated one.
+  void probe(parcels::Store& store, PhaseTimes& times) override;
 
-  /// Interpolates the evaluated flow to the parcels without moving them, for velocity().
-  void probe(parcels::Store& store, PhaseTimes& times);
-
-  /// Records of the last evaluate(): deposited means (volume, vorticity, buoyancy perturbation) and
-  /// the flow, in the layouts of mesh/grid.hpp; valid until the next stage or probe, which prepare
-  /// the flow for being interpolated.
-  const double* deposited() const { return deposited_.data(); }
-  const double* flow() const { return flow_.data(); }
-  const mesh::FlowSolver<D>& solver() const { return solver_; }
-  mesh::FlowSolver<D>& solver() { return solver_; }
-  std::size_t empty_nodes() const { return empty_nodes_; }
-  /// Shapes that lost positive definiteness and were reset to spheres since the start.
-  std::size_t broken_shapes() const { return broken_shapes_; }
-  const ReferenceProfile& reference() const { return reference_; }
-  parcels::Deposit<D>& deposit() { return deposit_; }
-  /// Room for support offsets between two steps: it is the memory of the stages' increments.
-  parcels::SupportOffsets<D>& offsets() { return offsets_; }
-  std::size_t allocated_bytes() const;
+  const double* deposited() override { return deposited_.data(); }
+  std::size_t allocated_bytes() const override;
 
  private:
+  using Base = ParcelMotion<D>;
+  using Base::deposit_state, Base::reserve, Base::stage_job;
+  using Base::deposited_, Base::flow_, Base::summary_, Base::broken_shapes_;
+  using Base::grid_, Base::scheme_;
+
   void stage(parcels::Store& store, MeanWind& wind, std::size_t s, double dt, bool evaluate_only,
              PhaseTimes& times);
   void sharpen_flow(PhaseTimes& times);
   void settle_net_vorticity(parcels::Store& store);
-  void reserve(std::size_t parcels);
-  std::array<AlignedArray<double>*, parcels::SupportOffsets<D>::components> lent_arrays();
 
-  mesh::Grid<D> grid_;
   double coriolis_;
-  LowStorageScheme scheme_;
-  ShapeIntegrator shape_;
-  ReferenceProfile reference_;
-  parcels::Deposit<D> deposit_;
   mesh::FlowSolver<D> solver_;
   mesh::Sharpening<D> sharpen_deposited_, sharpen_flow_;
-  mesh::FlowSummary summary_;
-
-  AlignedArray<double> deposited_, flow_;
-  std::vector<const double*> deposit_values_;
-  AlignedArray<double> perturbation_;  // b − b_ref(z) of every parcel, for a curved reference
-  std::array<AlignedArray<double>, D> position_increment_;
-  std::array<AlignedArray<double>, StageJob<D>::vorticity_components> vorticity_increment_;
-  std::array<AlignedArray<double>, StageJob<D>::gradient_components> shape_increment_;
-  parcels::SupportOffsets<D> offsets_;
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_{};         // at the start
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_change_{};  // due so far
   std::array<double, StageJob<D>::vorticity_components> net_vorticity_increment_{};
   bool flow_is_sharp_ = false;
-  std::size_t empty_nodes_ = 0;
-  std::size_t broken_shapes_ = 0;
 };
 
 }  // namespace pileus::dynamics

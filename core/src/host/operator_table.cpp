@@ -50,8 +50,17 @@ void check_hooks(const OperatorTable& t, Complaints& c) {
   }
 }
 
+/// Nothing merges or splits on the ground, and what leaves the parcels for it is a declared source.
+void check_surface(const pileus_quantity& q, const std::string& place, Complaints& c) {
+  c.require(q.nature == 0, place, "lies on the surface, so it has no nature");
+  c.require(q.budget == nullptr, place, "lies on the surface, so it belongs to no budget");
+  c.require(q.initial >= q.low && q.initial <= q.high, place,
+            "has its initial value outside its range");
+}
+
 void check_nature(const pileus_quantity& q, const std::string& place, Complaints& c) {
   const bool creates = (q.access & PILEUS_CREATE) != 0;
+  if (q.place == PILEUS_SURFACE) return check_surface(q, place, c);
   if (q.nature == PILEUS_DERIVED) {
     c.require(creates, place, "is derived but not owned: add PILEUS_CREATE, or leave its nature 0");
   } else if (creates) {
@@ -136,8 +145,13 @@ void check_condition(const pileus_condition& row, const std::string& place, cons
                      Complaints& c) {
   c.require(words::comparison.knows(row.op), place, "has an unknown comparison");
   const std::string quantity(c.text(row.quantity, place + " quantity"));
-  c.require(t.find_quantity(quantity) >= 0, place,
-            "compares '" + quantity + "', which the operator does not declare");
+  const int slot = t.find_quantity(quantity);
+  if (slot < 0) {
+    c.add(place, "compares '" + quantity + "', which the operator does not declare");
+  } else {
+    c.require(t.quantities[static_cast<std::size_t>(slot)].place == PILEUS_PARCEL, place,
+              "compares '" + quantity + "', which is no quantity of the parcels");
+  }
   if (row.parameter != nullptr) {
     c.require(t.find_parameter(row.parameter) >= 0, place,
               "compares with the parameter '" + std::string(row.parameter) +

@@ -35,7 +35,7 @@ struct OperatorTable {
   std::string module_version;
   std::string toolchain;
 
-  /// Index of a parameter or of a parcel quantity, or −1.
+  /// Index of a parameter or of a quantity, or −1.
   int find_parameter(std::string_view name) const;
   int find_quantity(std::string_view name) const;
 };

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* liquid_name = "mass_fraction_of_cloud_liquid_water_in_air";
+constexpr const char* rain_name = "mass_fraction_of_rain_in_air";
 constexpr const char* water_budget = "water";
 
 struct StateSums {
@@ -57,8 +58,11 @@ int Diagnostics::index(const std::string& name) const {
   return -1;
 }
 
-Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation)
-    : potential_energy_(scene), cloud_threshold_(scene.diagnostics.cloud_threshold) {
+Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation,
+                         const coupling::SurfaceFields& surface)
+    : potential_energy_(scene),
+      surface_(surface),
+      cloud_threshold_(scene.diagnostics.cloud_threshold) {
   const parcels::Store& store = simulation.store();
   const bool three = simulation.dimension() == 3;
   kinetic_ = add("kinetic_energy", "m2 s-2", "mean kinetic energy per mass, of the parcels");
@@ -85,14 +89,8 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
     mean_vorticity_.push_back(
         add(three ? std::string("mean_") + "xyz"[c] + "_vorticity" : "mean_vorticity", "s-1",
             "domain-mean vorticity"));
-  add_scalar_measures(store);
-  liquid_scalar_ = store.find_scalar(liquid_name);
-  if (liquid_scalar_ >= 0) {
-    mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
-    max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");
-    cloud_fraction_ = add("cloud_fraction", "1", "volume fraction of cloudy air");
-    cloud_mean_liquid_ = add("cloud_mean_liquid_water", "1", "mean liquid water of cloudy air");
-  }
+  add_scalars(store);
+  add_water(scene, simulation);
   for (const scene::ExactSolution& exact : scene.diagnostics.exact) {
     exact_.emplace_back(exact, scene, simulation);
     auto& entries = exact_entries_.emplace_back();
@@ -109,23 +107,47 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
   values_.assign(list_.size(), 0.0);
 }
 
-void Diagnostics::add_scalar_measures(const parcels::Store& store) {
+void Diagnostics::add_scalars(const parcels::Store& store) {
   bool holds_water = false;
   for (std::size_t s = 0; s < store.scalars().size(); ++s) {
     const parcels::Scalar& scalar = store.scalars()[s];
+    const bool derived = scalar.nature == parcels::Nature::derived;
+    // Buoyancy has measures of its own, and so has liquid water that follows from the others.
     if (scalar.name == "buoyancy" || scalar.name == coupling::previous_height_name ||
-        scalar.nature == parcels::Nature::derived)
+        (derived && scalar.name == liquid_name))
       continue;
     ScalarEntries entries{static_cast<int>(s), 0, 0, 0, false};
     const bool conserved = scalar.nature == parcels::Nature::intensive;
     entries.mean = add("mean_" + scalar.name, scalar.units, "domain mean", conserved);
     entries.low = add("min_" + scalar.name, scalar.units, "smallest value of a parcel");
     entries.high = add("max_" + scalar.name, scalar.units, "largest value of a parcel");
-    entries.water = scalar.budget == water_budget;
+    entries.water = !derived && scalar.budget == water_budget;
     holds_water = holds_water || entries.water;
     scalars_.push_back(entries);
   }
   if (holds_water) total_water_ = add("total_water", "1", "mean total water", true);
+  for (const coupling::SurfaceQuantity& quantity : surface_.list())
+    surface_entries_.push_back(
+        {add("mean_" + quantity.name, quantity.units, "mean over the ground"),
+         add("max_" + quantity.name, quantity.units, "largest value of a column of cells")});
+}
+
+void Diagnostics::add_water(const scene::Scene& scene, const Simulation& simulation) {
+  const parcels::Store& store = simulation.store();
+  liquid_scalar_ = store.find_scalar(liquid_name);
+  if (liquid_scalar_ >= 0) {
+    mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
+    max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");
+    cloud_fraction_ = add("cloud_fraction", "1", "volume fraction of cloudy air");
+    cloud_mean_liquid_ = add("cloud_mean_liquid_water", "1", "mean liquid water of cloudy air");
+    liquid_path_ = add("atmosphere_mass_content_of_cloud_liquid_water", "kg m-2",
+                       "mean mass of cloud liquid water over an area of the ground");
+  }
+  rain_scalar_ = store.find_scalar(rain_name);
+  if (rain_scalar_ >= 0)
+    rain_path_ = add("atmosphere_mass_content_of_liquid_precipitation", "kg m-2",
+                     "mean mass of rain over an area of the ground");
+  if (liquid_scalar_ >= 0 || rain_scalar_ >= 0) water_path_.emplace(scene, simulation);
 }
 
 void Diagnostics::add_gridded_measures(const scene::Scene& scene, const Simulation& simulation) {
@@ -165,6 +187,7 @@ void Diagnostics::observe_state(Simulation& simulation) {
   observe_parcels(simulation);
   observe_scalars(simulation);
   observe_cloud(simulation);
+  observe_surface();
   set(grid_kinetic_, simulation.grid_kinetic_energy());
   const parcels::VolumeError error = simulation.volume_error();
   set(volume_error_rms_, error.rms);
@@ -232,8 +255,8 @@ void Diagnostics::observe_scalars(const Simulation& simulation) {
   double total_water = 0;
   for (const ScalarEntries& entry : scalars_) {
     const double* value = store.scalar(entry.scalar);
-    const bool per_volume = store.scalars()[static_cast<std::size_t>(entry.scalar)].nature ==
-                            parcels::Nature::intensive;
+    const bool per_volume = store.scalars()[static_cast<std::size_t>(entry.scalar)].nature !=
+                            parcels::Nature::extensive;
     const ScalarSums sums = ordered_reduce(
         store.size(), ScalarSums{},
         [&](std::size_t begin, std::size_t end) {
@@ -258,6 +281,8 @@ void Diagnostics::observe_scalars(const Simulation& simulation) {
 }
 
 void Diagnostics::observe_cloud(const Simulation& simulation) {
+  if (rain_scalar_ >= 0)
+    set(rain_path_, water_path_->measure(simulation, simulation.store().scalar(rain_scalar_)));
   if (liquid_scalar_ < 0) return;
   const parcels::Store& store = simulation.store();
   const double* volume = store.volume();
@@ -281,10 +306,23 @@ void Diagnostics::observe_cloud(const Simulation& simulation) {
                          a.cloudy_liquid + o.cloudy_liquid, std::max(a.high, o.high)};
       });
   const double inverse = 1.0 / simulation.domain_volume();
+  set(liquid_path_, water_path_->measure(simulation, liquid));
   set(mean_liquid_, sums.liquid * inverse);
   set(max_liquid_, sums.high);
   set(cloud_fraction_, sums.cloudy * inverse);
   set(cloud_mean_liquid_, sums.cloudy > 0 ? sums.cloudy_liquid / sums.cloudy : 0.0);
+}
+
+void Diagnostics::observe_surface() {
+  for (std::size_t f = 0; f < surface_entries_.size(); ++f) {
+    double sum = 0, high = -infinity;
+    for (const double value : surface_.values(f)) {
+      sum += value;
+      high = std::max(high, value);
+    }
+    set(surface_entries_[f].mean, sum / static_cast<double>(surface_.columns()));
+    set(surface_entries_[f].high, high);
+  }
 }
 
 void Diagnostics::observe_velocity(Simulation& simulation) {

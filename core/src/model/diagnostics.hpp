@@ -1,6 +1,7 @@
 // Numbers that describe a state: energies, extrema, budgets, clouds.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "model/histogram.hpp"
 #include "model/potential_energy.hpp"
 #include "model/simulation.hpp"
+#include "model/water_path.hpp"
 #include "scene/scene.hpp"
 
 namespace pileus::model {
@@ -23,7 +25,9 @@ struct DiagnosticInfo {
 /// volume; sums run in an order independent of the number of threads.
 class Diagnostics {
  public:
-  Diagnostics(const scene::Scene& scene, const Simulation& simulation);
+  /// `surface`: of the run's operators; it has to outlive this.
+  Diagnostics(const scene::Scene& scene, const Simulation& simulation,
+              const coupling::SurfaceFields& surface);
 
   const std::vector<DiagnosticInfo>& list() const { return list_; }
   int index(const std::string& name) const;  // −1: there is none of that name
@@ -43,7 +47,9 @@ class Diagnostics {
   void observe_parcels(Simulation& simulation);
   void observe_scalars(const Simulation& simulation);
   void observe_cloud(const Simulation& simulation);
-  void add_scalar_measures(const parcels::Store& store);
+  void observe_surface();
+  void add_scalars(const parcels::Store& store);
+  void add_water(const scene::Scene& scene, const Simulation& simulation);
   void add_gridded_measures(const scene::Scene& scene, const Simulation& simulation);
   void observe_gridded_measures(Simulation& simulation);
 
@@ -54,6 +60,9 @@ class Diagnostics {
   struct ScalarEntries {
     int scalar, mean, low, high;
     bool water = false;  // part of the budget of that name
+  };
+  struct SurfaceEntries {
+    int mean, high;
   };
 
   std::vector<DiagnosticInfo> list_;
@@ -68,14 +77,17 @@ class Diagnostics {
   std::vector<Histogram> histograms_;
   std::vector<std::vector<int>> histogram_entries_;
   std::vector<ScalarEntries> scalars_;
+  const coupling::SurfaceFields& surface_;
+  std::vector<SurfaceEntries> surface_entries_;
+  std::optional<WaterPath> water_path_;  // of moist scenes
   double cloud_threshold_;
-  int liquid_scalar_ = -1;
+  int liquid_scalar_ = -1, rain_scalar_ = -1;
   int kinetic_, grid_kinetic_, potential_, available_, total_, mechanical_, enstrophy_, volume_,
       mean_buoyancy_, min_buoyancy_, max_buoyancy_, max_speed_, max_vertical_velocity_,
       min_vertical_velocity_, max_vorticity_, volume_error_rms_, volume_error_max_, parcels_;
   std::vector<int> mean_wind_, mean_vorticity_;
   int total_water_ = -1, mean_liquid_ = -1, max_liquid_ = -1, cloud_fraction_ = -1,
-      cloud_mean_liquid_ = -1;
+      cloud_mean_liquid_ = -1, liquid_path_ = -1, rain_path_ = -1;
 };
 
 }  // namespace pileus::model

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "base/aligned_array.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "model/sixth_order_difference.hpp"
 #include "scene/field_sampler.hpp"
+#include "scene/problems.hpp"
 
 namespace pileus::model {
 namespace {
@@ -38,8 +39,7 @@ class Differentiator {
       : grid_(grid), store_(store), shifted_(store.size()), value_(store.size()) {}
 
   void add(const scene::FieldSampler& field, int axis, double factor, double* sum) {
-    constexpr std::array<double, 3> weight = {3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0};
-    const double h = grid_.spacing[static_cast<std::size_t>(axis)] / 64.0;
+    const double h = grid_.spacing[static_cast<std::size_t>(axis)] * difference_step;
     for (int offset = 1; offset <= 3; ++offset)
       for (int side = -1; side <= 1; side += 2) {
         Positions<D> at = positions_of<D>(store_);
@@ -47,7 +47,8 @@ class Differentiator {
         for (std::size_t p = 0; p < store_.size(); ++p) shifted_[p] = centre[p] + side * offset * h;
         at.axis[static_cast<std::size_t>(axis)] = shifted_.data();
         field.sample(store_.size(), at.x(), at.y(), at.z(), value_.data());
-        const double w = factor * side * weight[static_cast<std::size_t>(offset - 1)] / h;
+        const double w =
+            factor * side * difference_weights[static_cast<std::size_t>(offset - 1)] / h;
         for (std::size_t p = 0; p < store_.size(); ++p) sum[p] += w * value_[p];
       }
   }
@@ -114,21 +115,25 @@ void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, pa
   }
 }
 
-std::function<double(double)> reference_function(const scene::Scene& scene) {
-  auto sampler = std::make_shared<scene::FieldSampler>(scene.background.reference_buoyancy, scene);
-  if (!sampler->height_alone())
-    throw Error(
-        ExitCode::usage,
-        fmt::format("{}:{}:{}: error: the reference buoyancy must be a function of z alone.",
-                    scene.background.reference_buoyancy.where.file,
-                    scene.background.reference_buoyancy.where.line,
-                    scene.background.reference_buoyancy.where.column));
-  return [sampler, x = scene.domain.lower.at(0),
-          y = scene.domain.dimension == 3 ? scene.domain.lower.at(1) : 0.0](double z) {
-    double value = 0;
-    sampler->sample(1, &x, &y, &z, &value);
-    return value;
-  };
+dynamics::ReferenceProfile profile_over_height(const scene::FieldDescription& field,
+                                               const scene::Scene& scene, const char* what,
+                                               double bottom, double top, int points) {
+  const scene::FieldSampler sampler(field, scene);
+  if (!sampler.height_alone())
+    throw Error(ExitCode::usage, fmt::format("{}: error: {} must be a function of z alone.",
+                                             scene::describe(field.where), what));
+  std::vector<double> z;
+  // The table asks for each of its heights once, from the bottom up.
+  dynamics::ReferenceProfile(bottom, top, points, [&](double height) {
+    z.push_back(height);
+    return 1.0;
+  });
+  const std::vector<double> x(z.size(), scene.domain.lower.at(0)),
+      y(z.size(), scene.domain.dimension == 3 ? scene.domain.lower.at(1) : 0.0);
+  std::vector<double> value(z.size());
+  sampler.sample(z.size(), x.data(), y.data(), z.data(), value.data());
+  std::size_t next = 0;
+  return dynamics::ReferenceProfile(bottom, top, points, [&](double) { return value[next++]; });
 }
 
 template void fill_initial_state<2>(const scene::Scene&, const mesh::Grid<2>&, parcels::Store&,

@@ -1,8 +1,7 @@
 // From the fields of a scene to the values parcels start with.
 #pragma once
-#include <functional>
-
-#include "dynamics/transport.hpp"
+#include "dynamics/parcel_motion.hpp"
+#include "dynamics/reference_profile.hpp"
 #include "mesh/grid.hpp"
 #include "parcels/store.hpp"
 #include "scene/scene.hpp"
@@ -17,8 +16,10 @@ template <int D>
 void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, parcels::Store& store,
                         dynamics::MeanWind& wind);
 
-/// The reference buoyancy of a scene as a function of height. Throws Error (usage) when it depends
-/// on anything else.
-std::function<double(double)> reference_function(const scene::Scene& scene);
+/// A field of the scene over height, tabulated at `points` heights from `bottom` to `top` (m).
+/// Throws Error (usage) naming `what` when it depends on anything but height.
+dynamics::ReferenceProfile profile_over_height(const scene::FieldDescription& field,
+                                               const scene::Scene& scene, const char* what,
+                                               double bottom, double top, int points);
 
 }  // namespace pileus::model

@@ -50,7 +50,7 @@ Loop::Loop(const scene::Scene& scene, std::vector<coupling::OperatorEntry> opera
       physics_(sequence_),
       simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
   sequence_.bind(simulation_->store(), simulation_->plugin_grid());
-  diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_);
+  diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface());
   check_expectations(scene.expect, diagnostics_->list());
   record_ = std::make_unique<Record>(diagnostics_->list());
 }
@@ -58,8 +58,8 @@ Loop::Loop(const scene::Scene& scene, std::vector<coupling::OperatorEntry> opera
 Loop::~Loop() = default;
 
 void Loop::open_streams(output::Start start) {
-  streams_ = std::make_unique<OutputStreams>(scene_, *simulation_, *record_, directory_,
-                                             run_provenance(scene_), start);
+  streams_ = std::make_unique<OutputStreams>(scene_, *simulation_, sequence_.surface(), *record_,
+                                             directory_, run_provenance(scene_), start);
 }
 
 void Loop::start(bool overwrite) {
@@ -82,6 +82,7 @@ bool Loop::resume() {
   simulation_->set_clock(checkpoint.time, checkpoint.step, checkpoint.dt);
   simulation_->restore(checkpoint.data);
   physics_.resume_at(checkpoint.step);
+  sequence_.surface().restore(checkpoint.data.arrays);
   sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt});
   sequence_.restore_books(checkpoint.data.arrays.at("books"));
   record_->restore(checkpoint.data, checkpoint.time);
@@ -236,6 +237,7 @@ void Loop::checkpoint() {
   record_->save(checkpoint.data);
   save_totals(checkpoint.data);
   checkpoint.data.arrays["books"] = sequence_.books();
+  checkpoint.data.arrays.merge(sequence_.surface().named_values());
   checkpoint.data.texts["scene"] = scene_.resolved_yaml;
   checkpoint.data.texts["version"] = std::string(build_record().version);
   checkpoint.data.texts["commit"] = std::string(build_record().commit);

@@ -22,6 +22,11 @@ output::Variable described(output::Variable variable) {
   return variable;
 }
 
+std::string standard_name_of(const std::string& name) {
+  const Quantity* q = find_quantity(name);
+  return q != nullptr ? std::string(q->standard_name) : std::string();
+}
+
 /// The wanted variables out of those that exist, in the wanted order; all when none is named.
 std::vector<output::Variable> choose(const std::vector<std::string>& wanted,
                                      const std::vector<output::Variable>& existing,
@@ -61,6 +66,13 @@ std::vector<output::Variable> parcel_columns(const parcels::Store& store) {
   return columns;
 }
 
+std::vector<output::Variable> ground_variables(const coupling::SurfaceFields& surface) {
+  std::vector<output::Variable> variables;
+  for (const coupling::SurfaceQuantity& quantity : surface.list())
+    variables.push_back({quantity.name, quantity.units, quantity.name, ""});
+  return variables;
+}
+
 /// Horizontal means of every field, the variance of the upward velocity and the buoyancy flux.
 std::vector<output::Variable> profile_variables(const std::vector<output::Variable>& fields) {
   std::vector<output::Variable> variables;
@@ -73,6 +85,10 @@ std::vector<output::Variable> profile_variables(const std::vector<output::Variab
   variables.push_back({"z_velocity_variance", "m2 s-2", "variance of the upward velocity", ""});
   variables.push_back({"buoyancy_flux", "m2 s-3", "resolved vertical flux of buoyancy", ""});
   return variables;
+}
+
+output::Encoding encoding_of(const scene::OutputControl& control) {
+  return {false, control.compress, control.mantissa_bits};
 }
 
 }  // namespace
@@ -91,24 +107,22 @@ void Schedule::done(double time) {
 }
 
 OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simulation,
-                             const Record& record, const output::RunDirectory& directory,
+                             const coupling::SurfaceFields& surface, const Record& record,
+                             const output::RunDirectory& directory,
                              const output::Provenance& provenance, output::Start start)
-    : fields_schedule_(scene.output.fields.every),
+    : surface_(surface),
+      fields_schedule_(scene.output.fields.every),
       parcels_schedule_(scene.output.parcels.every),
       profiles_schedule_(scene.output.profiles.every),
       series_schedule_(scene.output.series.every) {
-  const output::Encoding encoding{false, scene.output.compress, scene.output.mantissa_bits};
   const std::vector<output::Variable> fields = simulation.grid_fields();
-  if (scene.output.fields.every > 0) {
-    field_variables_ = choose(scene.output.fields.variables, fields, "fields");
-    fields_ = std::make_unique<output::FieldFile>(directory / "fields.nc", simulation.axes(),
-                                                  field_variables_, provenance, encoding, start);
-  }
+  if (scene.output.fields.every > 0)
+    open_fields(scene.output, simulation, directory / "fields.nc", provenance, start);
   if (scene.output.parcels.every > 0)
     parcels_ = std::make_unique<output::ParcelFile>(
         directory / "parcels.nc", simulation.dimension(),
         choose(scene.output.parcels.variables, parcel_columns(simulation.store()), "parcels"),
-        provenance, encoding, start);
+        provenance, encoding_of(scene.output), start);
   if (scene.output.profiles.every > 0) {
     profile_variables_ =
         choose(scene.output.profiles.variables, profile_variables(fields), "profiles");
@@ -118,9 +132,24 @@ OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simula
   }
   std::vector<output::Variable> numbers;
   for (const DiagnosticInfo& d : record.list())
-    numbers.push_back({d.name, d.units, d.long_name, ""});
+    numbers.push_back({d.name, d.units, d.long_name, standard_name_of(d.name)});
   series_ =
       std::make_unique<output::SeriesFile>(directory / "series.nc", numbers, provenance, start);
+}
+
+void OutputStreams::open_fields(const scene::OutputControl& control, const Simulation& simulation,
+                                const std::filesystem::path& path,
+                                const output::Provenance& provenance, output::Start start) {
+  std::vector<output::Variable> existing = simulation.grid_fields();
+  const std::vector<output::Variable> ground = ground_variables(surface_);
+  existing.insert(existing.end(), ground.begin(), ground.end());
+  for (output::Variable& variable : choose(control.fields.variables, existing, "fields")) {
+    const bool on_ground = surface_.find(variable.name) >= 0;
+    (on_ground ? ground_variables_ : field_variables_).push_back(std::move(variable));
+  }
+  fields_ = std::make_unique<output::FieldFile>(
+      path, simulation.axes(), field_variables_, provenance, encoding_of(control), start,
+      output::VariableSet{simulation.ground_axes(), ground_variables_});
 }
 
 /// Profiles and the series are frequent: they take the first step at or after their time, so that
@@ -152,6 +181,8 @@ void OutputStreams::write_fields(Simulation& simulation) {
   values_.resize(field_variables_.size());
   for (std::size_t v = 0; v < field_variables_.size(); ++v)
     simulation.grid_field(field_variables_[v].name, values_[v]);
+  for (const output::Variable& variable : ground_variables_)
+    values_.push_back(surface_.values(static_cast<std::size_t>(surface_.find(variable.name))));
   fields_->append(simulation.time(), values_);
 }
 

@@ -38,8 +38,9 @@ class Schedule {
 class OutputStreams {
  public:
   /// Creates the writers of the streams the scene switches on. Throws Error (usage) for variables
-  /// that do not exist, with the nearest that do.
-  OutputStreams(const scene::Scene& scene, const Simulation& simulation, const Record& record,
+  /// that do not exist, with the nearest that do. `surface` has to outlive this.
+  OutputStreams(const scene::Scene& scene, const Simulation& simulation,
+                const coupling::SurfaceFields& surface, const Record& record,
                 const output::RunDirectory& directory, const output::Provenance& provenance,
                 output::Start start);
 
@@ -58,11 +59,15 @@ class OutputStreams {
   std::vector<output::OutputSummary> summarise() const;
 
  private:
+  void open_fields(const scene::OutputControl& control, const Simulation& simulation,
+                   const std::filesystem::path& path, const output::Provenance& provenance,
+                   output::Start start);
   void write_fields(Simulation& simulation);
   void write_profiles(Simulation& simulation);
 
+  const coupling::SurfaceFields& surface_;
   Schedule fields_schedule_, parcels_schedule_, profiles_schedule_, series_schedule_;
-  std::vector<output::Variable> field_variables_, profile_variables_;
+  std::vector<output::Variable> field_variables_, ground_variables_, profile_variables_;
   std::unique_ptr<output::FieldFile> fields_;
   std::unique_ptr<output::ParcelFile> parcels_;
   std::unique_ptr<output::ProfileFile> profiles_;

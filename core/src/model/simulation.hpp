@@ -11,8 +11,8 @@
 
 #include "base/phase_timer.hpp"
 #include "coupling/operator_sequence.hpp"
+#include "dynamics/parcel_motion.hpp"
 #include "dynamics/time_step.hpp"
-#include "dynamics/transport.hpp"
 #include "mesh/grid.hpp"
 #include "output/checkpoint.hpp"
 #include "output/netcdf_form.hpp"
@@ -80,6 +80,7 @@ class Simulation {
   /// The mesh as plugins see it.
   virtual pileus_grid plugin_grid() const = 0;
   virtual std::vector<output::Axis> axes() const = 0;
+  virtual std::vector<output::Axis> ground_axes() const = 0;
   /// Nodes in file order (z slowest, x fastest): horizontal count times n_z + 1.
   virtual std::size_t node_count() const = 0;
   /// Gridded field of the evaluated state in file order: "volume", velocity and vorticity

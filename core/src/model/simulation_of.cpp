@@ -7,9 +7,14 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
+#include "dynamics/prescribed_transport.hpp"
+#include "dynamics/transport.hpp"
 #include "model/initial_state.hpp"
+#include "model/prescribed_velocity.hpp"
 #include "output/grid_fields.hpp"
 #include "parcels/lattice.hpp"
+#include "scene/problems.hpp"
 
 namespace pileus::model {
 namespace {
@@ -44,9 +49,27 @@ void require_countable(const mesh::Grid<D>& grid, int per_cell) {
                           nodes, parcels / 4));
 }
 
+template <int D>
+parcels::SplitCriterion<D> split_criterion(const mesh::Grid<D>& grid,
+                                           const scene::ParcelControl& control) {
+  if (!control.splitting) return parcels::SplitCriterion<D>::never();
+  return parcels::SplitCriterion<D>::make(grid, control.max_aspect_ratio, control.max_volume_ratio);
+}
+
 /// The reference profile resolves the mesh sixteen-fold: an exact reproduction of linear ones, and
 /// of piecewise linear ones with knots on the levels.
 constexpr int reference_points_per_cell = 16;
+
+const dynamics::LowStorageScheme& scheme_of(const scene::Scene& scene) {
+  return scene.time.scheme == scene::RungeKutta::order4_stages5 ? dynamics::carpenter_kennedy_4()
+                                                                : dynamics::williamson_3();
+}
+
+dynamics::ShapeIntegrator shape_integrator_of(const scene::Scene& scene) {
+  return scene.numerics.shape_integrator == scene::NumericsControl::ShapeIntegrator::exponential
+             ? dynamics::ShapeIntegrator::exponential
+             : dynamics::ShapeIntegrator::runge_kutta;
+}
 
 }  // namespace
 
@@ -54,19 +77,16 @@ template <int D>
 SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars,
                               Physics& physics)
     : grid_(make_grid<D>(scene.domain)),
-      time_control_(scene.time),
+      scene_(scene),
       step_control_(make_step_control(scene.time)),
-      background_(scene.background),
-      boundaries_(scene.boundaries),
-      numerics_(scene.numerics),
-      parcels_per_cell_(scene.parcels.per_cell),
-      reference_(grid_.bottom(), grid_.top(), reference_points_per_cell * grid_.nz() + 1,
-                 reference_function(scene)),
+      reference_(profile_over_height(scene.background.reference_buoyancy, scene,
+                                     "the reference buoyancy", grid_.bottom(), grid_.top(),
+                                     reference_points_per_cell * grid_.nz() + 1)),
       buoyancy_(physics),
       deposit_(grid_),
-      upkeep_(grid_, deposit_.tiling(), grid_.cell_volume() / scene.parcels.min_volume_ratio,
-              parcels::SplitCriterion<D>::make(grid_, scene.parcels.max_aspect_ratio,
-                                               scene.parcels.max_volume_ratio)),
+      upkeep_(grid_, deposit_.tiling(),
+              scene.parcels.merging ? grid_.cell_volume() / scene.parcels.min_volume_ratio : 0.0,
+              split_criterion(grid_, scene.parcels)),
       correction_(grid_, {scene.parcels.correction_iterations, scene.parcels.gradient_prefactor,
                           scene.parcels.max_compression}) {
   require_countable(grid_, scene.parcels.per_cell);
@@ -76,28 +96,36 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
 template <int D>
 void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
   zero_wall_vorticity_ = zero_wall_vorticity;
+  transport_ = scene_.flow.prescribed ? prescribed_transport() : induced_transport();
+}
+
+template <int D>
+std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::induced_transport() const {
+  const scene::NumericsControl& numerics = scene_.numerics;
   mesh::FlowOptions flow;
-  std::copy_n(background_.coriolis.begin(), 3, flow.planetary_vorticity.begin());
-  flow.zero_vertical_vorticity = zero_wall_vorticity;
-  flow.filter = numerics_.spectral_filter;
+  std::copy_n(scene_.background.coriolis.begin(), 3, flow.planetary_vorticity.begin());
+  flow.zero_vertical_vorticity = zero_wall_vorticity_;
+  flow.filter = numerics.spectral_filter;
   flow.vertical_derivative =
-      numerics_.vertical_derivative == scene::NumericsControl::VerticalDerivative::compact
+      numerics.vertical_derivative == scene::NumericsControl::VerticalDerivative::compact
           ? mesh::VerticalDerivative::compact
           : mesh::VerticalDerivative::centred;
   if (!reference_.is_zero())
     for (int k = 0; k <= grid_.nz(); ++k)
       flow.reference_stratification.push_back(
           reference_.gradient(grid_.bottom() + k * grid_.spacing[D - 1]));
-  transport_ = std::make_unique<dynamics::Transport<D>>(
-      grid_, flow, background_.coriolis[2],
-      time_control_.scheme == scene::RungeKutta::order4_stages5 ? dynamics::carpenter_kennedy_4()
-                                                                : dynamics::williamson_3(),
-      numerics_.shape_integrator == scene::NumericsControl::ShapeIntegrator::exponential
-          ? dynamics::ShapeIntegrator::exponential
-          : dynamics::ShapeIntegrator::runge_kutta,
-      0.25 * numerics_.window_compensation *
-          mesh::lattice_mean_product(parcels::parcels_per_direction(parcels_per_cell_, D)),
+  return std::make_unique<dynamics::Transport<D>>(
+      grid_, flow, scene_.background.coriolis[2], scheme_of(scene_), shape_integrator_of(scene_),
+      0.25 * numerics.window_compensation *
+          mesh::lattice_mean_product(parcels::parcels_per_direction(scene_.parcels.per_cell, D)),
       reference_);
+}
+
+template <int D>
+std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::prescribed_transport() const {
+  auto velocity = std::make_unique<PrescribedVelocity<D>>(scene_, grid_);
+  return std::make_unique<dynamics::PrescribedTransport<D>>(
+      grid_, std::move(velocity), scheme_of(scene_), shape_integrator_of(scene_), reference_);
 }
 
 template <int D>
@@ -106,6 +134,26 @@ void SimulationOf<D>::initialise(const scene::Scene& scene) {
   place_parcels(scene.parcels);
   fill_initial_state(scene, grid_, *store_, wind_);
   build_transport(walls_without_vorticity());
+  if (scene_.flow.prescribed) warn_of_divergence();
+}
+
+/// Parcels keep their volume, so they gather where a velocity converges. Looked for at a few times,
+/// none of which is a likely zero of a periodic factor.
+template <int D>
+void SimulationOf<D>::warn_of_divergence() const {
+  constexpr double noticeable = 1e-6;
+  PrescribedVelocity<D> velocity(scene_, grid_);
+  for (const double part : {0.03, 0.11, 0.37, 0.71}) {
+    const double time = part * scene_.time.end;
+    const double relative = velocity.relative_divergence(time);
+    if (relative <= noticeable) continue;
+    log(LogLevel::warning,
+        fmt::format("{}: the prescribed flow diverges at t = {:.6g} s: |div u| reaches {:.3g} of "
+                    "the largest du/dx, dv/dy or dw/dz, and parcels, which keep their volume, "
+                    "gather or thin out there.",
+                    scene::describe(scene_.flow.where), time, relative));
+    return;
+  }
 }
 
 /// Scattered parcels are brought to fill the cells evenly before they get their fields: later, the
@@ -131,9 +179,10 @@ void SimulationOf<D>::place_parcels(const scene::ParcelControl& control) {
 template <int D>
 std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
   using Choice = scene::Boundaries::WallVorticity;
-  if (D == 2 || boundaries_.vertical_vorticity == Choice::free) return {false, false};
-  if (boundaries_.vertical_vorticity == Choice::zero) return {true, true};
-  if (background_.coriolis[2] != 0) return {false, false};
+  if (D == 2 || scene_.flow.prescribed || scene_.boundaries.vertical_vorticity == Choice::free)
+    return {false, false};
+  if (scene_.boundaries.vertical_vorticity == Choice::zero) return {true, true};
+  if (scene_.background.coriolis[2] != 0) return {false, false};
   AlignedArray<double> field(grid_.nodes() * mesh::DepositRecord<D>::width);
   parcels::SupportOffsets<D> offsets;
   offsets.update(*store_);
@@ -188,7 +237,7 @@ void SimulationOf<D>::evaluate() {
 }
 
 /// Whatever is not finite anywhere on a level spreads over the whole level in the horizontal
-/// transforms, so one column shows it.
+/// transforms, so one column shows it. A prescribed flow sees to its own values.
 template <int D>
 void SimulationOf<D>::require_finite() const {
   double sum = 0;
@@ -213,8 +262,8 @@ void SimulationOf<D>::require_finite() const {
 
 template <int D>
 dynamics::TimeStep SimulationOf<D>::allowed_step() {
-  dynamics::TimeStep allowed =
-      dynamics::choose_time_step<D>(step_control_, grid_, flow_summary_, background_.coriolis[2]);
+  dynamics::TimeStep allowed = dynamics::choose_time_step<D>(step_control_, grid_, flow_summary_,
+                                                             scene_.background.coriolis[2]);
   if (!step_control_.fixed) {
     const double physics = buoyancy_.physics.largest_step();
     if (physics < allowed.seconds) allowed = {physics, "operator"};
@@ -260,6 +309,11 @@ StepReport SimulationOf<D>::finish_step() {
 template <int D>
 std::vector<output::Axis> SimulationOf<D>::axes() const {
   return output::node_axes(grid_);
+}
+
+template <int D>
+std::vector<output::Axis> SimulationOf<D>::ground_axes() const {
+  return output::ground_axes(grid_);
 }
 
 template <int D>
@@ -355,8 +409,7 @@ void SimulationOf<D>::grid_field(const std::string& name, std::vector<double>& v
 template <int D>
 std::size_t SimulationOf<D>::allocated_bytes() const {
   return store_->allocated_bytes() + transport_->allocated_bytes() + upkeep_.allocated_bytes() +
-         correction_.allocated_bytes() + deposit_.allocated_bytes() +
-         transport_->solver().allocated_bytes();
+         correction_.allocated_bytes() + deposit_.allocated_bytes();
 }
 
 std::unique_ptr<Simulation> make_simulation(const scene::Scene& scene,

@@ -33,6 +33,7 @@ class SimulationOf final : public Simulation {
   double height() const override { return grid_.extent[D - 1]; }
   pileus_grid plugin_grid() const override { return coupling::abi_grid(grid_); }
   std::vector<output::Axis> axes() const override;
+  std::vector<output::Axis> ground_axes() const override;
   std::size_t node_count() const override {
     return grid_.columns() * static_cast<std::size_t>(grid_.nz() + 1);
   }
@@ -55,22 +56,21 @@ class SimulationOf final : public Simulation {
   };
 
   void build_transport(std::array<bool, 2> zero_wall_vorticity);
+  std::unique_ptr<dynamics::ParcelMotion<D>> induced_transport() const;
+  std::unique_ptr<dynamics::ParcelMotion<D>> prescribed_transport() const;
+  void warn_of_divergence() const;
   std::array<bool, 2> walls_without_vorticity() const;
   void place_parcels(const scene::ParcelControl& control);
   void require_finite() const;
   std::vector<double> corners() const;
 
   mesh::Grid<D> grid_;
-  scene::TimeControl time_control_;
+  scene::Scene scene_;
   dynamics::TimeStepControl step_control_;
-  scene::Background background_;
-  scene::Boundaries boundaries_;
-  scene::NumericsControl numerics_;
-  int parcels_per_cell_;
   dynamics::ReferenceProfile reference_;
   TracedBuoyancy buoyancy_;
   std::array<bool, 2> zero_wall_vorticity_{false, false};
-  std::unique_ptr<dynamics::Transport<D>> transport_;
+  std::unique_ptr<dynamics::ParcelMotion<D>> transport_;
   parcels::Deposit<D> deposit_;  // tiling and gridded output beside the transport's own
   parcels::Upkeep<D> upkeep_;
   parcels::VolumeCorrection<D> correction_;

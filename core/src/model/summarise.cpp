@@ -86,10 +86,11 @@ output::Summary Loop::summary() const {
     budget.defect = budget.final - budget.initial - budget.sources;
     s.budgets.push_back(budget);
   }
-  s.state_sha256 = output::state_sha256(
-      simulation_->store(), simulation_->time(), simulation_->step(),
-      {{"mean_wind",
-        {simulation_->mean_wind().velocity[0], simulation_->mean_wind().velocity[1]}}});
+  std::map<std::string, std::vector<double>> beside_parcels = sequence_.surface().named_values();
+  const auto& wind = simulation_->mean_wind().velocity;
+  beside_parcels["mean_wind"] = {wind[0], wind[1]};
+  s.state_sha256 = output::state_sha256(simulation_->store(), simulation_->time(),
+                                        simulation_->step(), beside_parcels);
   s.directory = directory_.path().string();
   if (streams_) s.outputs = streams_->summarise();
   return s;

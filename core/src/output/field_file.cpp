@@ -8,9 +8,9 @@ namespace pileus::output {
 
 FieldFile::FieldFile(std::filesystem::path path, std::vector<Axis> axes,
                      std::vector<Variable> variables, Provenance provenance, Encoding encoding,
-                     Start start)
-    : records_(std::move(path), std::move(axes), std::move(variables), std::move(provenance),
-               encoding, start) {
+                     Start start, VariableSet ground)
+    : records_(std::move(path), {std::move(axes), std::move(variables)}, std::move(ground),
+               std::move(provenance), encoding, start) {
   if (start.kind == Start::Kind::resume && !records_.times().empty()) write_sidecar();
 }
 
@@ -28,12 +28,12 @@ void FieldFile::write_sidecar() const {
 
 ProfileFile::ProfileFile(std::filesystem::path path, Axis height, std::vector<Variable> variables,
                          Provenance provenance, Start start)
-    : RecordFile(std::move(path), {std::move(height)}, std::move(variables), std::move(provenance),
-                 Encoding{.exact = true}, start) {}
+    : RecordFile(std::move(path), {{std::move(height)}, std::move(variables)}, {},
+                 std::move(provenance), Encoding{.exact = true}, start) {}
 
 SeriesFile::SeriesFile(std::filesystem::path path, std::vector<Variable> variables,
                        Provenance provenance, Start start)
-    : RecordFile(std::move(path), {}, std::move(variables), std::move(provenance),
+    : RecordFile(std::move(path), {{}, std::move(variables)}, {}, std::move(provenance),
                  Encoding{.exact = true}, start) {}
 
 void SeriesFile::append(double time, std::span<const double> values) {

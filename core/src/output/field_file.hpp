@@ -9,11 +9,13 @@
 namespace pileus::output {
 
 /// Gridded fields over (time, z, y, x), in 2D (time, z, x), with an XDMF sidecar `<name>.xmf`.
-/// `axes` and values as `node_axes` and `copy_nodes` give them.
+/// `axes` and values as `node_axes` and `copy_nodes` give them. Quantities of the ground lie over
+/// (time, y_cell, x_cell), in 2D (time, x_cell), with the axes of `ground_axes`; they are not in
+/// the sidecar.
 class FieldFile {
  public:
   FieldFile(std::filesystem::path path, std::vector<Axis> axes, std::vector<Variable> variables,
-            Provenance provenance, Encoding encoding, Start start);
+            Provenance provenance, Encoding encoding, Start start, VariableSet ground = {});
 
   /// See RecordFile::append.
   void append(double time, std::span<const std::vector<double>> values);

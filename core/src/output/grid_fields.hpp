@@ -28,6 +28,22 @@ std::vector<Axis> node_axes(const mesh::Grid<D>& grid) {
   return axes;
 }
 
+/// The axes of quantities of the ground, slowest first: y_cell, x_cell (2D: x_cell), the centres of
+/// the columns of cells.
+template <int D>
+std::vector<Axis> ground_axes(const mesh::Grid<D>& grid) {
+  std::vector<Axis> axes;
+  for (int d = D - 2; d >= 0; --d) {
+    const auto axis_number = static_cast<std::size_t>(d);
+    Axis axis{
+        {d == 0 ? "x_cell" : "y_cell", "m", "horizontal distance of the centre of a cell", ""}, {}};
+    for (int i = 0; i < grid.cells[axis_number]; ++i)
+      axis.values.push_back(grid.lower[axis_number] + (i + 0.5) * grid.spacing[axis_number]);
+    axes.push_back(std::move(axis));
+  }
+  return axes;
+}
+
 /// Copies component `component` of `width` interleaved values per node (mesh/grid.hpp) into file
 /// order; `values` gets n_x·n_y·(n_z + 1) entries.
 template <int D>

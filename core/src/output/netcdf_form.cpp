@@ -13,6 +13,12 @@ namespace pileus::output {
 using hdf5::Id;
 using hdf5::Session;
 
+std::size_t VariableSet::record_size() const {
+  std::size_t size = 1;
+  for (const Axis& axis : axes) size *= axis.values.size();
+  return size;
+}
+
 double round_mantissa(double value, int bits) {
   constexpr int mantissa = std::numeric_limits<double>::digits - 1;
   if (bits <= 0 || bits >= mantissa || !std::isfinite(value)) return value;

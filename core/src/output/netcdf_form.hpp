@@ -27,6 +27,15 @@ struct Axis {
   std::string positive{};  // "up" for heights
 };
 
+/// Variables over the same axes, which are listed from the slowest to the fastest varying.
+struct VariableSet {
+  std::vector<Axis> axes;
+  std::vector<Variable> variables;
+
+  /// Values of one variable at one time.
+  std::size_t record_size() const;
+};
+
 /// How numbers are stored.
 struct Encoding {
   bool exact = false;     // float64; else float32

@@ -20,23 +20,15 @@ constexpr std::size_t largest_chunk_bytes = std::size_t{4} << 20;
 constexpr std::size_t small_record_bytes = 4096;
 }  // namespace
 
-RecordFile::RecordFile(std::filesystem::path path, std::vector<Axis> axes,
-                       std::vector<Variable> variables, Provenance provenance, Encoding encoding,
-                       Start start)
+RecordFile::RecordFile(std::filesystem::path path, VariableSet main, VariableSet second,
+                       Provenance provenance, Encoding encoding, Start start)
     : path_(std::move(path)),
-      axes_(std::move(axes)),
-      variables_(std::move(variables)),
+      sets_{std::move(main), std::move(second)},
       provenance_(std::move(provenance)),
       encoding_(encoding) {
   if (record_size() * encoding_.value_bytes() < small_record_bytes) encoding_.compress = false;
   refuse_existing(path_, start);
   if (start.kind == Start::Kind::resume && std::filesystem::exists(path_)) resume(start.time);
-}
-
-std::size_t RecordFile::record_size() const {
-  std::size_t size = 1;
-  for (const Axis& axis : axes_) size *= axis.values.size();
-  return size;
 }
 
 void RecordFile::append(double time, std::span<const std::vector<double>> values) {
@@ -45,14 +37,19 @@ void RecordFile::append(double time, std::span<const std::vector<double>> values
 
 void RecordFile::append_records(std::span<const double> times,
                                 std::span<const std::vector<double>> values) {
-  if (values.size() != variables_.size())
+  const std::size_t declared = sets_[0].variables.size() + sets_[1].variables.size();
+  if (values.size() != declared)
     throw std::invalid_argument(fmt::format("{}: {} variables given, {} declared", path_.string(),
-                                            values.size(), variables_.size()));
-  for (std::size_t v = 0; v < values.size(); ++v)
-    if (values[v].size() != record_size() * times.size())
-      throw std::invalid_argument(fmt::format("{}: {} values of {}, {} expected", path_.string(),
-                                              values[v].size(), variables_[v].name,
-                                              record_size() * times.size()));
+                                            values.size(), declared));
+  std::size_t v = 0;
+  for (const VariableSet& set : sets_)
+    for (const Variable& variable : set.variables) {
+      const std::size_t expected = set.record_size() * times.size();
+      if (values[v].size() != expected)
+        throw std::invalid_argument(fmt::format("{}: {} values of {}, {} expected", path_.string(),
+                                                values[v].size(), variable.name, expected));
+      ++v;
+    }
   if (times.empty()) return;
   require_later(path_, times_, times);
   Session session = exists_ ? Session::update(path_) : Session::create(path_);
@@ -63,18 +60,18 @@ void RecordFile::append_records(std::span<const double> times,
   times_.insert(times_.end(), times.begin(), times.end());
 }
 
-VariableShape RecordFile::shape(std::vector<hid_t> scales) const {
+VariableShape RecordFile::shape(const VariableSet& set, std::vector<hid_t> scales) const {
   VariableShape shape{std::move(scales), {0}, {H5S_UNLIMITED}, {1}};
-  const std::size_t record_bytes = record_size() * encoding_.value_bytes();
+  const std::size_t record_bytes = set.record_size() * encoding_.value_bytes();
   if (record_bytes < small_record_bytes) shape.chunk[0] = small_record_bytes / record_bytes;
-  for (const Axis& axis : axes_) {
+  for (const Axis& axis : set.axes) {
     shape.extent.push_back(axis.values.size());
     shape.maximum.push_back(axis.values.size());
     shape.chunk.push_back(axis.values.size());
   }
-  if (!axes_.empty() && record_bytes > largest_chunk_bytes) {
+  if (!set.axes.empty() && record_bytes > largest_chunk_bytes) {
     // Slabs of nearly equal thickness: a thin last one would take the room of a full one.
-    const std::size_t levels = axes_.front().values.size();
+    const std::size_t levels = set.axes.front().values.size();
     const std::size_t slabs = std::min(levels, record_bytes / largest_chunk_bytes + 1);
     shape.chunk[1] = (levels + slabs - 1) / slabs;
   }
@@ -83,33 +80,51 @@ VariableShape RecordFile::shape(std::vector<hid_t> scales) const {
 
 void RecordFile::create(const Session& session) const {
   write_provenance(session, session.file(), provenance_);
-  std::vector<Id> scales;
-  scales.push_back(create_time(session, session.file()));
-  for (const Axis& axis : axes_) scales.push_back(create_axis(session, session.file(), axis));
-  const VariableShape over_axes = shape({scales.begin(), scales.end()});
-  for (const Variable& variable : variables_)
-    create_variable(session, session.file(), variable, encoding_, over_axes);
+  const Id time = create_time(session, session.file());
+  for (const VariableSet& set : sets_) {
+    if (set.variables.empty()) continue;
+    std::vector<Id> axes;
+    std::vector<hid_t> scales{time};
+    for (const Axis& axis : set.axes) {
+      axes.push_back(create_axis(session, session.file(), axis));
+      scales.push_back(axes.back());
+    }
+    const VariableShape over_axes = shape(set, scales);
+    Encoding encoding = encoding_;
+    if (set.record_size() * encoding.value_bytes() < small_record_bytes) encoding.compress = false;
+    for (const Variable& variable : set.variables)
+      create_variable(session, session.file(), variable, encoding, over_axes);
+  }
 }
 
 void RecordFile::extend(const Session& session, std::span<const double> times,
                         std::span<const std::vector<double>> values) {
   const Id time = hdf5::open_dataset(session, session.file(), "time");
-  std::vector<hsize_t> start = hdf5::extent_of(session, time);
+  const std::vector<hsize_t> start = hdf5::extent_of(session, time);
   if (start != std::vector<hsize_t>{times_.size()})
     throw Error(ExitCode::file, fmt::format("{}: another program changed the file: {} records "
                                             "were expected, {} are there.",
                                             path_.string(), times_.size(), start.at(0)));
-  std::vector<hsize_t> count{times.size()}, end{start[0] + times.size()};
+  const std::vector<hsize_t> count{times.size()}, end{start[0] + times.size()};
   session.check(H5Dset_extent(time, end.data()), "extend time");
   hdf5::write_slab(session, time, start, count, H5T_NATIVE_DOUBLE, times.data());
-  for (const Axis& axis : axes_) {
+  const std::size_t main = sets_[0].variables.size();
+  extend(session, sets_[0], times.size(), values.first(main));
+  extend(session, sets_[1], times.size(), values.subspan(main));
+}
+
+void RecordFile::extend(const Session& session, const VariableSet& set, std::size_t records,
+                        std::span<const std::vector<double>> values) {
+  std::vector<hsize_t> start{times_.size()}, count{records}, end{times_.size() + records};
+  for (const Axis& axis : set.axes) {
     start.push_back(0);
     count.push_back(axis.values.size());
     end.push_back(axis.values.size());
   }
-  for (std::size_t v = 0; v < variables_.size(); ++v) {
-    const Id dataset = hdf5::open_dataset(session, session.file(), variables_[v].name);
-    session.check(H5Dset_extent(dataset, end.data()), "extend " + variables_[v].name);
+  for (std::size_t v = 0; v < set.variables.size(); ++v) {
+    const std::string& name = set.variables[v].name;
+    const Id dataset = hdf5::open_dataset(session, session.file(), name);
+    session.check(H5Dset_extent(dataset, end.data()), "extend " + name);
     const void* data = encode(values[v], encoding_, floats_, doubles_);
     hdf5::write_slab(session, dataset, start, count, encoding_.memory_type(), data);
   }
@@ -117,19 +132,26 @@ void RecordFile::extend(const Session& session, std::span<const double> times,
 
 void RecordFile::resume(double time) {
   Session session = Session::update(path_);
-  const hid_t file = session.file();
-  times_ = hdf5::read_array<double>(session, file, "time");
+  times_ = hdf5::read_array<double>(session, session.file(), "time");
   times_.resize(records_until(times_, time));
-  const Id time_axis = hdf5::open_dataset(session, file, "time");
+  const Id time_axis = hdf5::open_dataset(session, session.file(), "time");
+  const hsize_t records = times_.size();
+  session.check(H5Dset_extent(time_axis, &records), "shorten time");
+  for (const VariableSet& set : sets_) resume(session, set);
+  session.commit();
+  exists_ = true;
+}
+
+/// Shortens the variables to the records that stay.
+void RecordFile::resume(const Session& session, const VariableSet& set) const {
   std::vector<hsize_t> extent{times_.size()};
-  session.check(H5Dset_extent(time_axis, extent.data()), "shorten time");
-  for (const Axis& axis : axes_) extent.push_back(axis.values.size());
-  for (const Variable& variable : variables_) {
-    if (!hdf5::has_object(file, variable.name))
+  for (const Axis& axis : set.axes) extent.push_back(axis.values.size());
+  for (const Variable& variable : set.variables) {
+    if (!hdf5::has_object(session.file(), variable.name))
       throw Error(ExitCode::file,
                   fmt::format("{}: the file of the run to resume has no variable {}.",
                               path_.string(), variable.name));
-    const Id dataset = hdf5::open_dataset(session, file, variable.name);
+    const Id dataset = hdf5::open_dataset(session, session.file(), variable.name);
     std::vector<hsize_t> found = hdf5::extent_of(session, dataset);
     const bool longer = !found.empty() && found[0] >= extent[0];
     if (longer) found[0] = extent[0];
@@ -139,8 +161,6 @@ void RecordFile::resume(double time) {
                               path_.string(), variable.name));
     session.check(H5Dset_extent(dataset, extent.data()), "shorten " + variable.name);
   }
-  session.commit();
-  exists_ = true;
 }
 
 }  // namespace pileus::output

@@ -1,6 +1,7 @@
 // Splitting parcels that have become too long or too large.
 #pragma once
 #include <cstddef>
+#include <limits>
 
 #include "mesh/grid.hpp"
 #include "parcels/store.hpp"
@@ -17,6 +18,10 @@ struct SplitCriterion {
 
   static SplitCriterion make(const mesh::Grid<D>& grid, double max_aspect_ratio,
                              double max_volume_ratio);
+  static SplitCriterion never() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {infinity, infinity, infinity};
+  }
   bool splits(double squared_length, double squared_ratio, double volume) const {
     if constexpr (D == 3)
       return squared_ratio >= squared_aspect_ratio || squared_length >= squared_longest;

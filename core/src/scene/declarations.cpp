@@ -269,8 +269,11 @@ const Table& parcels_table() {
                      "Two dimensions only: a parcel splits when larger than the cell area over "
                      "this.")
                    .above(0),
+               value("merging", &ParcelControl::merging, "1", "Whether small parcels are merged."),
+               value("splitting", &ParcelControl::splitting, "1",
+                     "Whether stretched and large parcels split."),
                value("correction_iterations", &ParcelControl::correction_iterations, "1",
-                     "Volume corrections (Laplace, then gradient) per step.")
+                     "Volume corrections (Laplace, then gradient) per step; 0 for none.")
                    .at_least(0)
                    .at_most(100),
                value("gradient_prefactor", &ParcelControl::gradient_prefactor, "1",

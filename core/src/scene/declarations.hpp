@@ -13,12 +13,14 @@ const Table& step_table();
 const Table& background_table();
 const Table& initial_table();
 const Table& boundaries_table();
+const Table& flow_table();
 const Table& parcels_table();
 const Table& operator_table();  // one entry of operators
 const Table& coupling_table();
 const Table& effects_table();
 const Table& energy_table();
 const Table& numerics_table();
+const Table& water_path_table();
 const Table& diagnostics_table();
 const Table& output_table();
 const Table& expectation_table();  // one entry of expect

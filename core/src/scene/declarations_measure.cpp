@@ -180,6 +180,26 @@ const Table& histogram_table() {
 
 }  // namespace
 
+const Table& water_path_table() {
+  static const Table table = {
+      .path = "diagnostics.water_path",
+      .doc =
+          "The mass of liquid water over an area of the ground: density times mass fraction, "
+          "summed "
+          "over the parcels between two heights.",
+      .keys = {value("density", &WaterPathControl::density, "kg m-3",
+                     "Density of the air, a function of z alone."),
+               value("bottom", &WaterPathControl::bottom, "m", "Height above which parcels count.")
+                   .otherwise("the domain's bottom"),
+               value("top", &WaterPathControl::top, "m", "Height below which parcels count.")
+                   .otherwise("the domain's top")},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
 const Table& numerics_table() {
   static const Table table = {
       .path = "numerics",
@@ -212,6 +232,7 @@ const Table& diagnostics_table() {
       .keys = {value("cloud_threshold", &DiagnosticControl::cloud_threshold, "1",
                      "Cloud liquid water mass fraction above which air counts as cloud.")
                    .at_least(0),
+               section("water_path", &DiagnosticControl::water_path, water_path_table()),
                sections("exact", &DiagnosticControl::exact, exact_table()),
                sections("modes", &DiagnosticControl::modes, mode_table()),
                sections("fronts", &DiagnosticControl::fronts, front_table()),

@@ -3,58 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/units.hpp"
 #include "pileus/philox.hpp"
-#include "scene/formula.hpp"
 #include "scene/problems.hpp"
 
 namespace pileus::scene {
-
-/// A field's formula with the named formulas it needs, each evaluated once per point.
-class FieldSampler::Evaluator {
- public:
-  Evaluator(const std::string& text, const Vocabulary& vocabulary) {
-    std::vector<std::string> variables = {"x", "y", "z"};
-    for (const NamedFormula& named : vocabulary.formulas) {
-      formulas_.emplace_back(named.text, variables, vocabulary.constants);
-      variables.push_back(named.name);
-    }
-    formulas_.emplace_back(text, variables, vocabulary.constants);
-    values_.assign(variables.size(), 0.0);
-    needed_.assign(formulas_.size(), false);
-    needed_.back() = true;
-    // From the end backwards, since a formula uses only those before it.
-    for (std::size_t i = formulas_.size(); i-- > 0;)
-      for (std::size_t j = 0; needed_[i] && j < i; ++j)
-        if (formulas_[i].uses(3 + j)) needed_[j] = true;
-  }
-
-  double operator()(double x, double y, double z) {
-    values_[0] = x;
-    values_[1] = y;
-    values_[2] = z;
-    const std::size_t last = formulas_.size() - 1;
-    for (std::size_t i = 0; i < last; ++i)
-      if (needed_[i]) values_[3 + i] = formulas_[i](values_.data());
-    return formulas_[last](values_.data());
-  }
-
-  /// Whether x (0), y (1) or z (2) has any part in the value.
-  bool uses(std::size_t coordinate) const {
-    for (std::size_t i = 0; i < formulas_.size(); ++i)
-      if (needed_[i] && formulas_[i].uses(coordinate)) return true;
-    return false;
-  }
-
- private:
-  std::vector<Formula> formulas_;
-  std::vector<double> values_;
-  std::vector<bool> needed_;
-};
 
 FieldSampler::FieldSampler(const FieldDescription& field, const Vocabulary& vocabulary,
                            const Domain& domain)
@@ -62,7 +20,8 @@ FieldSampler::FieldSampler(const FieldDescription& field, const Vocabulary& voca
   if (field.form == FieldDescription::Form::file) gridded_.emplace(field, domain);
   if (field.form != FieldDescription::Form::formula) return;
   try {
-    compiled_ = std::make_unique<const Evaluator>(field.formula, vocabulary);
+    compiled_ = std::make_unique<const PointFormula>(
+        field.formula, std::vector<std::string>{"x", "y", "z"}, vocabulary);
   } catch (const FormulaProblem& problem) {
     throw Error(ExitCode::usage, fmt::format("{}: error: {}", describe(field.where), problem.text));
   }
@@ -111,14 +70,14 @@ double FieldSampler::noise(double x, double y, double z) const {
 
 void FieldSampler::sample_range(std::size_t begin, std::size_t end, const double* x,
                                 const double* y, const double* z, double* out,
-                                Evaluator* evaluator) const {
+                                PointFormula* formula) const {
   using Form = FieldDescription::Form;
   const bool three = domain_.dimension == 3;
   for (std::size_t i = begin; i < end; ++i) {
     const double yi = three ? y[i] : 0.0;
     double value = field_.constant;
     if (field_.form == Form::formula)
-      value = (*evaluator)(x[i], yi, z[i]);
+      value = (*formula)(std::array{x[i], yi, z[i]}.data());
     else if (field_.form == Form::profile)
       value = interpolate(field_.profile, z[i]);
     else if (field_.form == Form::file)
@@ -138,10 +97,10 @@ void FieldSampler::sample(std::size_t n, const double* x, const double* y, const
                           double* out) const {
   // muParser keeps its stack in the parser: every thread works with a copy of its own. The copies
   // are made here, by one thread: constructing parsers changes data they all share.
-  std::vector<std::unique_ptr<Evaluator>> copies(
+  std::vector<std::unique_ptr<PointFormula>> copies(
       static_cast<std::size_t>(std::max(1, omp_get_max_threads())));
   if (compiled_)
-    for (auto& copy : copies) copy = std::make_unique<Evaluator>(*compiled_);
+    for (auto& copy : copies) copy = std::make_unique<PointFormula>(*compiled_);
   parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
     sample_range(begin, end, x, y, z, out,
                  copies[static_cast<std::size_t>(omp_get_thread_num())].get());

@@ -1,22 +1,16 @@
 // Evaluates a field of a scene at any set of points.
 #pragma once
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/gridded_file.hpp"
+#include "scene/point_formula.hpp"
 #include "scene/scene.hpp"
 
 namespace pileus::scene {
-
-/// The names a formula may use beside x, y and z.
-struct Vocabulary {
-  std::map<std::string, double> constants;
-  std::vector<NamedFormula> formulas;
-};
 
 class FieldSampler {
  public:
@@ -43,15 +37,14 @@ class FieldSampler {
   static double interpolate(const Profile& profile, double z);
 
  private:
-  class Evaluator;
   void sample_range(std::size_t begin, std::size_t end, const double* x, const double* y,
-                    const double* z, double* out, Evaluator* evaluator) const;
+                    const double* z, double* out, PointFormula* formula) const;
   double noise(double x, double y, double z) const;
 
   FieldDescription field_;
   Vocabulary vocabulary_;
   Domain domain_;
-  std::unique_ptr<const Evaluator> compiled_;  // of a formula; copied once per thread
+  std::unique_ptr<const PointFormula> compiled_;  // of a formula; copied once per thread
   std::optional<GriddedField> gridded_;
 };
 

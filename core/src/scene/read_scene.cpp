@@ -39,6 +39,22 @@ void check_order(Reader& reader, const Node& root) {
       reader.problem(order->value, fmt::format("the order leaves out the operator '{}'", name));
 }
 
+/// A given velocity leaves nothing for an initial one to do.
+void check_flow(Reader& reader, const Node& root) {
+  if (!reader.scene().flow.prescribed) return;
+  const Entry* initial = root.find("initial");
+  if (initial == nullptr) return;
+  const std::vector<double>& wind = reader.scene().initial.mean_wind;
+  const bool calm = std::all_of(wind.begin(), wind.end(), [](double u) { return u == 0; });
+  for (const std::string_view key : {"velocity", "vorticity", "mean_wind"}) {
+    const Entry* entry = initial->value.find(key);
+    if (entry == nullptr || (key == "mean_wind" && calm)) continue;
+    reader.problems().add(
+        {entry->where, fmt::format("'initial.{}' has no effect when the flow is prescribed", key),
+         static_cast<int>(key.size()), reader.scene().flow.where, "the flow is prescribed here"});
+  }
+}
+
 /// Two or three, from the first list of the domain section.
 int dimension_of(const Node& root) {
   const Entry* domain = root.find("domain");
@@ -88,6 +104,7 @@ Scene interpret(Node root, const std::string& path, Problems& problems) {
   Reader reader(scene, problems);
   reader.section(root, scene_table(), &scene);
   check_order(reader, root);
+  check_flow(reader, root);
   if (problems.empty()) scene.resolved_yaml = resolved_yaml(scene);
   return scene;
 }
@@ -115,6 +132,7 @@ const Table& scene_table() {
                   section("background", &Scene::background, background_table()),
                   section("initial", &Scene::initial, initial_table()),
                   section("boundaries", &Scene::boundaries, boundaries_table()),
+                  section("flow", &Scene::flow, flow_table()),
                   section("parcels", &Scene::parcels, parcels_table()),
                   sections("operators", &Scene::operators, operator_table()),
                   section("coupling", &Scene::coupling, coupling_table()),

@@ -94,6 +94,18 @@ struct ParcelControl {
   int correction_iterations = 2;
   double gradient_prefactor = 1.8;
   double max_compression = 0.5;
+  bool merging = true, splitting = true;
+};
+
+/// Where the velocity comes from: the vorticity of the parcels, or formulas.
+struct FlowControl {
+  struct Component {
+    std::string formula = "0";  // m s-1; of x, y, z (m), t (s), constants and named formulas
+    Location where;
+  };
+  bool prescribed = false;
+  Component x, y, z;
+  Location where;  // of the prescription
 };
 
 struct Boundaries {
@@ -236,8 +248,19 @@ struct MirrorControl {
   Location where;
 };
 
+/// What the mass of water over an area of the ground is summed over.
+struct WaterPathControl {
+  WaterPathControl() {
+    density.constant = 1;
+    density.units = "kg m-3";
+  }
+  FieldDescription density;           // function of z only
+  std::optional<double> bottom, top;  // m; the domain's without
+};
+
 struct DiagnosticControl {
   double cloud_threshold = 1e-6;  // 1; liquid water mass fraction from which air counts as cloudy
+  WaterPathControl water_path;
   std::vector<ExactSolution> exact;
   std::vector<ModeControl> modes;
   std::vector<FrontControl> fronts;
@@ -265,6 +288,7 @@ struct Scene {
   Background background;
   ParcelControl parcels;
   Boundaries boundaries;
+  FlowControl flow;
   Initial initial;
   std::vector<OperatorBlock> operators;
   Coupling coupling;

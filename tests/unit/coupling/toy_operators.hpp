@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -139,7 +140,7 @@ class Substepped : public Operator<Substepped> {
 /// A run of parcels of volume 2 at height 100 + p, uid 1 + p.
 struct ToyRun {
   ToyRun(std::vector<coupling::OperatorEntry> entries, std::size_t parcels,
-         coupling::SequenceOptions options = {})
+         coupling::SequenceOptions options = {}, std::optional<pileus_grid> grid = {})
       : sequence(std::move(entries), std::move(options)), store(3, sequence.required_scalars()) {
     store.resize(parcels);
     for (int c = 0; c < store.column_count(); ++c) std::fill_n(store.column(c), parcels, 0.0);
@@ -148,7 +149,7 @@ struct ToyRun {
       store.volume()[p] = 2.0;
       store.position(2)[p] = 100.0 + static_cast<double>(p);
     }
-    sequence.bind(store, {});
+    sequence.bind(store, grid);
     sequence.init({});
   }
   double* values(const char* name) { return store.scalar(store.find_scalar(name)); }

@@ -21,7 +21,7 @@ class ReadFields : public testing::Test {
     path_ = folder_ / "fields.nc";
     const std::vector<Axis> axes = {{{"z", "m", "height"}, {0, 10}, "up"},
                                     {{"x", "m", "eastward distance"}, {0, 5, 10}}};
-    RecordFile file(path_, axes, {{"buoyancy", "m s-2", "buoyancy"}}, {}, {.exact = true},
+    RecordFile file(path_, {axes, {{"buoyancy", "m s-2", "buoyancy"}}}, {}, {}, {.exact = true},
                     Start::fresh());
     file.append(0, std::vector<std::vector<double>>{{1, 2, 3, 4, 5, 6}});
     file.append(2.5, std::vector<std::vector<double>>{{7, 8, 9, 10, 11, 12}});

@@ -7,6 +7,7 @@
 namespace pileus::PILEUS_ISA {
 namespace {
 
+using dynamics::GivenStageJob;
 using dynamics::ShapeIntegrator;
 using dynamics::StageJob;
 using mesh::FlowRecord;
@@ -236,8 +237,37 @@ void stage_2d(StageJob<2>& job) {
   }
 }
 
+void given_stage_3d(GivenStageJob<3>& job) {
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = job.end - p, i = p - job.begin;
+    for (int d = 0; d < 3; ++d)
+      advance(job.position[d], job.position_increment[d], p, load(job.velocity[d] + i), job.keep,
+              job.advance, job.first, job.evaluate_only);
+    const auto gradient = [&](int c) { return load(job.gradient[c] + i); };
+    advance_shape(
+        job, p, count < lanes ? count : lanes,
+        Matrix3<Pack>{gradient(0), gradient(1), gradient(2), gradient(3), gradient(4), gradient(5),
+                      gradient(6), gradient(7), -(gradient(0) + gradient(4))});
+  }
+}
+
+void given_stage_2d(GivenStageJob<2>& job) {
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = job.end - p, i = p - job.begin;
+    for (int d = 0; d < 2; ++d)
+      advance(job.position[d], job.position_increment[d], p, load(job.velocity[d] + i), job.keep,
+              job.advance, job.first, job.evaluate_only);
+    const Pack u_x = load(job.gradient[0] + i);
+    advance_shape(job, p, count < lanes ? count : lanes,
+                  Matrix2<Pack>{u_x, load(job.gradient[1] + i), load(job.gradient[2] + i), -u_x});
+  }
+}
+
 }  // namespace
 
-const dynamics::Kernels dynamics_kernels = {.stage_3d = stage_3d, .stage_2d = stage_2d};
+const dynamics::Kernels dynamics_kernels = {.stage_3d = stage_3d,
+                                            .stage_2d = stage_2d,
+                                            .given_stage_3d = given_stage_3d,
+                                            .given_stage_2d = given_stage_2d};
 
 }  // namespace pileus::PILEUS_ISA
