@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
   Action action;
   add_run(app, action);
   add_check(app, action);
+  add_study(app, action);
   add_report(app, action);
   add_plugins(app, action);
   add_inspect(app, action);

@@ -5,6 +5,7 @@
 #include "base/terminal.hpp"
 #include "model/run.hpp"
 #include "output/summary.hpp"
+#include "study/target_error.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -22,6 +23,16 @@ ExitCode run(const model::RunRequest& request) {
   if (!request.quiet) std::cout << output::print_ledger(result.summary);
   return result.summary.status == output::Summary::Status::stopped ? ExitCode::stopped
                                                                    : ExitCode::done;
+}
+
+/// Puts the cheapest setting that meets the target in front of the user's own.
+void apply_target(study::TargetRequest& target, model::RunRequest& request) {
+  target.scene_path = request.scene_path;
+  target.overrides = request.overrides;
+  const study::Choice choice = study::choose_setting(target);
+  request.overrides.insert(request.overrides.begin(), choice.overrides.begin(),
+                           choice.overrides.end());
+  if (!request.quiet) std::cout << choice.explanation << std::flush;
 }
 
 }  // namespace
@@ -48,7 +59,26 @@ void add_run(CLI::App& app, Action& action) {
   verb->add_flag("--force", request->force, "Replace an earlier run in the results folder")
       ->excludes(resume);
   verb->add_flag("--quiet", request->quiet, "Print errors only");
-  verb->callback([&action, request] { action = [request] { return run(*request); }; });
+  auto target = std::make_shared<study::TargetRequest>();
+  auto* error = verb->add_option("--target-error", target->target,
+                                 "Take the cheapest setting whose measured error is at most this, "
+                                 "such as 1%; needs --norm")
+                    ->type_name("ERROR");
+  auto* norm = verb->add_option("--norm", target->norm, "Name of the error, as its study calls it")
+                   ->type_name("NAME")
+                   ->needs(error);
+  error->needs(norm);
+  verb->add_option("--study", target->study,
+                   "The findings to choose from, a study.json; default: those kept in a folder "
+                   "studies/results above the scene")
+      ->type_name("FILE")
+      ->needs(error);
+  verb->callback([&action, request, target] {
+    action = [request, target] {
+      if (!target->target.empty()) apply_target(*target, *request);
+      return run(*request);
+    };
+  });
 }
 
 }  // namespace pileus::cli

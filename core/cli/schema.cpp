@@ -1,4 +1,4 @@
-// pileus schema: the JSON Schema of scenes, for editors.
+// pileus schema: the JSON Schemas of scenes and studies, for editors.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -8,6 +8,7 @@
 
 #include "host/search.hpp"
 #include "study/declarations.hpp"
+#include "study/study_file.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -15,13 +16,15 @@ namespace pileus::cli {
 namespace {
 
 struct SchemaRequest {
+  std::string kind = "scene";
   bool as_reference = false;
   std::string path;  // empty: standard output
 };
 
 ExitCode show(const SchemaRequest& request) {
-  std::string text = study::scene_schema(host::default_search_path("."));
-  if (request.as_reference) text = study::key_reference(text);
+  std::string text = request.kind == "study" ? study::study_schema()
+                                             : study::scene_schema(host::default_search_path("."));
+  if (request.as_reference) text = study::key_reference(request.kind, text);
   if (request.path.empty()) {
     std::cout << text;
     return ExitCode::done;
@@ -38,8 +41,12 @@ ExitCode show(const SchemaRequest& request) {
 
 void add_schema(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "schema", "Print the JSON Schema of scenes, with the plugins found, for editors");
+      "schema",
+      "Print the JSON Schema of scenes, with the plugins found, or of studies, for editors");
   auto request = std::make_shared<SchemaRequest>();
+  verb->add_option("kind", request->kind, "scene or study; default: scene")
+      ->check(CLI::IsMember({"scene", "study"}))
+      ->type_name("KIND");
   verb->add_flag("--reference", request->as_reference, "As a page of Markdown for reading");
   verb->add_option("--write", request->path, "Write to this file instead")->type_name("FILE");
   verb->callback([&action, request] { action = [request] { return show(*request); }; });

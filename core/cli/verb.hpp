@@ -16,5 +16,6 @@ void add_plugins(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
+void add_study(CLI::App& app, Action& action);
 
 }  // namespace pileus::cli

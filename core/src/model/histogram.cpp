@@ -4,53 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "base/error.hpp"
+#include "model/table_column.hpp"
 
 namespace pileus::model {
-namespace {
-
-std::vector<std::string> split_row(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream row(line);
-  for (std::string cell; std::getline(row, cell, ',');) {
-    while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.pop_back();
-    cells.push_back(cell);
-  }
-  return cells;
-}
-
-/// One column of a CSV file with a header row; lines starting with # are comments.
-std::vector<double> read_column(const scene::HistogramControl::Reference& reference) {
-  std::ifstream file(reference.path);
-  if (!file)
-    throw Error(ExitCode::usage,
-                fmt::format("{}:{}: error: cannot read the histogram file '{}'.",
-                            reference.where.file, reference.where.line, reference.path));
-  std::vector<double> values;
-  std::ptrdiff_t column = -1;
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    const std::vector<std::string> cells = split_row(line);
-    if (column < 0) {
-      column = std::find(cells.begin(), cells.end(), reference.column) - cells.begin();
-      if (column == static_cast<std::ptrdiff_t>(cells.size()))
-        throw Error(ExitCode::usage,
-                    fmt::format("{}:{}: error: '{}' has no column '{}'; it has {}.",
-                                reference.where.file, reference.where.line, reference.path,
-                                reference.column, fmt::join(cells, ", ")));
-      continue;
-    }
-    if (column < static_cast<std::ptrdiff_t>(cells.size()))
-      values.push_back(std::stod(cells[static_cast<std::size_t>(column)]));
-  }
-  return values;
-}
-
-}  // namespace
-
 Histogram::Histogram(const scene::HistogramControl& control, const Simulation& simulation)
     : control_(control), scalar_(simulation.store().find_scalar(control.variable)) {
   if (scalar_ < 0)
@@ -59,7 +17,9 @@ Histogram::Histogram(const scene::HistogramControl& control, const Simulation& s
         fmt::format("{}:{}: error: histogram '{}': no parcel quantity '{}' in this run.",
                     control.where.file, control.where.line, control.name, control.variable));
   for (const auto& reference : control.references) {
-    references_.push_back(read_column(reference));
+    references_.push_back(
+        read_table_column(reference.path, reference.column,
+                          fmt::format("{}:{}", reference.where.file, reference.where.line)));
     if (references_.back().size() != static_cast<std::size_t>(control.bins))
       throw Error(ExitCode::usage,
                   fmt::format("{}:{}: error: '{}' has {} rows, the histogram {} bins.",

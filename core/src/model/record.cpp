@@ -28,12 +28,26 @@ double Record::at(std::size_t diagnostic, double time) const {
 
 const std::vector<std::string>& known_statistics() {
   static const std::vector<std::string> words = {
-      "initial", "final",           "min",         "max",
-      "mean",    "relative_change", "growth_rate", "first_time_above"};
+      "initial",          "final",         "min", "max", "mean", "relative_change", "growth_rate",
+      "first_time_above", "mean_deviation"};
   return words;
 }
 
 namespace {
+
+double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+/// ⟨|1 − v/⟨v⟩|⟩, the measure of Frey et al. (2023) for what an invariant does over a run.
+double mean_deviation(std::span<const double> values) {
+  const double mean = mean_of(values);
+  double sum = 0;
+  for (const double v : values) sum += std::abs(1 - v / mean);
+  return sum / static_cast<double>(values.size());
+}
 
 std::optional<double> growth_rate(std::span<const double> times, std::span<const double> values) {
   if (times.size() < 3) return std::nullopt;
@@ -74,11 +88,8 @@ std::optional<double> Record::statistic(std::size_t diagnostic, const std::strin
   if (name == "final") return end;
   if (name == "min") return *std::min_element(begin, stop);
   if (name == "max") return *std::max_element(begin, stop);
-  if (name == "mean") {
-    double sum = 0;
-    for (auto v = begin; v != stop; ++v) sum += *v;
-    return sum / static_cast<double>(count);
-  }
+  if (name == "mean") return mean_of({begin, stop});
+  if (name == "mean_deviation") return mean_deviation({begin, stop});
   if (name == "relative_change") return (end - *begin) / std::abs(*begin);
   if (name == "growth_rate") {
     const auto at = static_cast<std::size_t>(skipped), n = static_cast<std::size_t>(count);

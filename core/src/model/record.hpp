@@ -29,7 +29,8 @@ class Record {
   /// initial)/|initial|), first_time_above (s, of the first record above zero); nothing for an
   /// unknown word or when there is no such record; growth_rate: slope of the straight line through
   /// the logarithms of the magnitudes (s⁻¹), nothing for fewer than three records or a zero among
-  /// them. `time` replaces the end of the run, `from` its beginning.
+  /// them; mean_deviation: the mean of |1 − v/⟨v⟩|. `time` replaces the end of the run, `from` its
+  /// beginning.
   std::optional<double> statistic(std::size_t diagnostic, const std::string& name,
                                   std::optional<double> time,
                                   std::optional<double> from = {}) const;

@@ -304,11 +304,12 @@ const Table& expectation_table() {
              Key key = value(
                  "statistic", &Expectation::statistic, "1",
                  "Which number of its series: the value at the start or end, an "
-                 "extremum or mean over the run, final over initial minus one, or the rate at "
-                 "which the logarithm of its magnitude grows (s-1, least squares).");
+                 "extremum or mean over the run, final over initial minus one, the rate at "
+                 "which the logarithm of its magnitude grows (s-1, least squares), or the mean of "
+                 "|1 - value/mean|.");
              key.type = KeyType::custom;
-             key.choices = {"initial", "final",           "min",        "max",
-                            "mean",    "relative_change", "growth_rate"};
+             key.choices = {"initial", "final",           "min",         "max",
+                            "mean",    "relative_change", "growth_rate", "mean_deviation"};
              key.default_doc = "final";
              key.read = [choices = key.choices](Reader& reader, const Entry& entry, void* object) {
                Key words;

@@ -40,14 +40,29 @@ std::string describe(const Node& node);
 /// Returns a null node when the text is empty or not parseable.
 Node parse_document(const std::string& file, std::string_view text, Problems& problems);
 
+/// What kind of file a document is, in messages: "scene" and what it cannot be without.
+struct DocumentKind {
+  std::string name = "scene", needs = "'domain' and 'time'", sections = "domain:, time:, …";
+};
+
 /// Reads a YAML file and, when its top level has `extends: other.yaml` (relative to the file), lays
 /// it over that file, key by key; `expect` and every list are replaced as a whole, and entries of
 /// `operators` are matched by their names. Throws pileus::Error: ExitCode::usage for a missing file
 /// (with the names near it) or a folder, ExitCode::file for one that cannot be read.
-Node load_document(const std::string& path, Problems& problems);
+Node load_document(const std::string& path, Problems& problems, const DocumentKind& kind = {});
 
 /// Lays `over` on `base`: mappings are merged key by key, everything else is replaced.
 void overlay(Node& base, const Node& over);
+
+/// A value for the key at a dotted path, with the place where it was written.
+struct Setting {
+  std::string key;
+  Node value;
+  Location where;  // of the key
+};
+
+/// Sets the value at the setting's path; what stood there, and its place, are replaced.
+void apply_setting(Node& root, const Setting& setting, Problems& problems);
 
 /// Sets the value at a dotted path ("time.end", "operators.mixing.beta") from `key=value` text.
 void apply_override(Node& root, const std::string& setting, Problems& problems);

@@ -206,7 +206,7 @@ Key sections(std::string name, std::vector<S> T::*member, const Table& table) {
 /// The whole scene's declarations.
 const Table& scene_table();
 
-/// Every declared section (depth first), for "did you mean" across sections.
-std::vector<const Table*> all_tables();
+/// Every section declared below a root (depth first), for "did you mean" across sections.
+std::vector<const Table*> all_tables(const Table& root);
 
 }  // namespace pileus::scene

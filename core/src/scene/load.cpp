@@ -43,52 +43,61 @@ std::string names_near(const fs::path& missing) {
 }
 
 /// The text of a file, or an explanation why there is none (`problem` set).
-std::string read_text(const std::string& path) {
+std::string read_text(const std::string& path, const DocumentKind& kind) {
   std::error_code status;
   const fs::path file(path);
   if (fs::is_directory(file, status))
     throw Error(ExitCode::usage,
-                fmt::format("'{}' is a folder, not a scene file. {}", path,
+                fmt::format("'{}' is a folder, not a {} file. {}", path, kind.name,
                             names_near(file / (file.filename().string() + ".yaml"))));
   if (!fs::exists(file, status))
     throw Error(ExitCode::usage,
-                fmt::format("There is no scene file '{}' (looked for '{}'). {}", path,
+                fmt::format("There is no {} file '{}' (looked for '{}'). {}", kind.name, path,
                             fs::absolute(file).lexically_normal().string(), names_near(file)));
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream.is_open() || stream.bad())
-    throw Error(ExitCode::file, fmt::format("The scene file '{}' cannot be read: {}.", path,
+    throw Error(ExitCode::file, fmt::format("The {} file '{}' cannot be read: {}.", kind.name, path,
                                             errno != 0 ? std::strerror(errno) : "input error"));
   if (text.size() > max_bytes)
     throw Error(ExitCode::usage,
-                fmt::format("'{}' has {} bytes; no scene is that large. Is it a data file?", path,
-                            text.size()));
+                fmt::format("'{}' has {} bytes; no {} is that large. Is it a data file?", path,
+                            text.size(), kind.name));
   return text;
 }
 
-Node load_layer(const std::string& path, Problems& problems, std::vector<std::string>& chain);
+/// A document being read, and the files that led to it.
+struct Loading {
+  Problems& problems;
+  const DocumentKind& kind;
+  std::vector<std::string> chain = {};
+};
+
+Node load_layer(const std::string& path, Loading& loading);
 
 /// The scene that `node` extends, with `node` laid over it.
-Node extended(Node node, const std::string& path, Problems& problems,
-              std::vector<std::string>& chain) {
+Node extended(Node node, const std::string& path, Loading& loading) {
+  Problems& problems = loading.problems;
+  const std::vector<std::string>& chain = loading.chain;
   const Entry* extends = node.find("extends");
   if (extends == nullptr) return node;
   if (extends->value.kind != Node::Kind::scalar || extends->value.text.empty()) {
-    problems.add(extends->value.where,
-                 fmt::format("'extends' names one scene file, found {}", describe(extends->value)));
+    problems.add(extends->value.where, fmt::format("'extends' names one {} file, found {}",
+                                                   loading.kind.name, describe(extends->value)));
     return node;
   }
   const fs::path parent = fs::path(path).parent_path() / extends->value.text;
   const std::string canonical = fs::weakly_canonical(parent).string();
   if (std::find(chain.begin(), chain.end(), canonical) != chain.end() ||
       chain.size() > max_extends) {
-    problems.add(extends->value.where, "the scenes extend each other in a circle",
+    problems.add(extends->value.where,
+                 fmt::format("the {} files extend each other in a circle", loading.kind.name),
                  extends->value.width());
     return node;
   }
   try {
-    Node base = load_layer(parent.lexically_normal().string(), problems, chain);
+    Node base = load_layer(parent.lexically_normal().string(), loading);
     overlay(base, node);
     return base;
   } catch (const Error& failure) {
@@ -98,19 +107,20 @@ Node extended(Node node, const std::string& path, Problems& problems,
   }
 }
 
-Node load_layer(const std::string& path, Problems& problems, std::vector<std::string>& chain) {
-  const std::string text = read_text(path);
-  chain.push_back(fs::weakly_canonical(path).string());
+Node load_layer(const std::string& path, Loading& loading) {
+  Problems& problems = loading.problems;
+  const std::string text = read_text(path, loading.kind);
+  loading.chain.push_back(fs::weakly_canonical(path).string());
   const std::size_t before = problems.size();
   Node node = parse_document(path, text, problems);
   if (problems.size() == before && node.kind == Node::Kind::null)
-    problems.add({path, 1, 1}, "the file is empty; a scene needs at least 'domain' and 'time'");
+    problems.add({path, 1, 1}, fmt::format("the file is empty; a {} needs at least {}",
+                                           loading.kind.name, loading.kind.needs));
   else if (node.kind != Node::Kind::mapping && node.kind != Node::Kind::null)
-    problems.add(node.where, fmt::format("a scene is a mapping of sections (domain:, time:, …), "
-                                         "found {}",
-                                         describe(node)));
+    problems.add(node.where, fmt::format("a {} is a mapping of sections ({}), found {}",
+                                         loading.kind.name, loading.kind.sections, describe(node)));
   if (node.kind != Node::Kind::mapping) return {};
-  return extended(std::move(node), path, problems, chain);
+  return extended(std::move(node), path, loading);
 }
 
 void overlay_operators(Node& base, const Node& over) {
@@ -206,9 +216,28 @@ void overlay(Node& base, const Node& over) {
     base = over;
 }
 
-Node load_document(const std::string& path, Problems& problems) {
-  std::vector<std::string> chain;
-  return load_layer(path, problems, chain);
+Node load_document(const std::string& path, Problems& problems, const DocumentKind& kind) {
+  Loading loading{problems, kind};
+  return load_layer(path, loading);
+}
+
+void apply_setting(Node& root, const Setting& setting, Problems& problems) {
+  Node* node = &root;
+  for (const std::string& word : split_path(setting.key)) {
+    const bool was_list = node->kind == Node::Kind::list;
+    std::vector<std::string> labels;
+    for (const Node& item : node->items) labels.push_back(operator_label(item));
+    Node* child = child_for(*node, word, setting.where);
+    if (child == nullptr && was_list) {
+      problems.add(setting.where, fmt::format("no operator here is called '{}'; there {}", word,
+                                              labels.empty() ? std::string("is none")
+                                                             : "is " + alternatives(labels)));
+      return;
+    }
+    node = child;
+  }
+  // The entry's own place moves with the value: an unknown key is then blamed on the setting.
+  *node = setting.value;
 }
 
 void apply_override(Node& root, const std::string& setting, Problems& problems) {
@@ -225,22 +254,7 @@ void apply_override(Node& root, const std::string& setting, Problems& problems) 
     return;
   }
   relocate(value, where);
-  Node* node = &root;
-  for (const std::string& word : split_path(setting.substr(0, equals))) {
-    const bool was_list = node->kind == Node::Kind::list;
-    std::vector<std::string> labels;
-    for (const Node& item : node->items) labels.push_back(operator_label(item));
-    Node* child = child_for(*node, word, where);
-    if (child == nullptr && was_list) {
-      problems.add(where, fmt::format("no operator here is called '{}'; there {}", word,
-                                      labels.empty() ? std::string("is none")
-                                                     : "is " + alternatives(labels)));
-      return;
-    }
-    node = child;
-  }
-  // The entry's own place moves with the value: an unknown key is then blamed on the command line.
-  *node = std::move(value);
+  apply_setting(root, {setting.substr(0, equals), std::move(value), where}, problems);
 }
 
 }  // namespace pileus::scene

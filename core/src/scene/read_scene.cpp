@@ -149,14 +149,14 @@ const Table& scene_table() {
   return table;
 }
 
-std::vector<const Table*> all_tables() {
+std::vector<const Table*> all_tables(const Table& root) {
   std::vector<const Table*> tables;
   const auto visit = [&](const auto& self, const Table& table) -> void {
     tables.push_back(&table);
     for (const Key& key : table.keys)
       if (key.table != nullptr) self(self, *key.table);
   };
-  visit(visit, scene_table());
+  visit(visit, root);
   return tables;
 }
 
@@ -164,6 +164,13 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& overri
                  Problems& problems) {
   Node root = load_document(path, problems);
   for (const std::string& setting : overrides) apply_override(root, setting, problems);
+  return interpret(std::move(root), path, problems);
+}
+
+Scene read_scene_with(const std::string& path, std::span<const Setting> settings,
+                      Problems& problems) {
+  Node root = load_document(path, problems);
+  for (const Setting& setting : settings) apply_setting(root, setting, problems);
   return interpret(std::move(root), path, problems);
 }
 

@@ -1,8 +1,10 @@
 // From a YAML file to a validated Scene.
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
+#include "scene/document.hpp"
 #include "scene/problems.hpp"
 #include "scene/scene.hpp"
 
@@ -14,7 +16,11 @@ namespace pileus::scene {
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides,
                  Problems& problems);
 
-/// As above; throws pileus::Error with ExitCode::usage and all problems.
+/// As above, with settings that know where they were written.
+Scene read_scene_with(const std::string& path, std::span<const Setting> settings,
+                      Problems& problems);
+
+/// As the first; throws pileus::Error with ExitCode::usage and all problems.
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides = {});
 
 /// A scene from text; `name` stands for the file in messages and locates relative paths.

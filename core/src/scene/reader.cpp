@@ -82,7 +82,7 @@ void Reader::unknown_key(const Entry& entry, const Table& table) {
   std::string text = fmt::format("unknown key '{}' {}", entry.key, where);
   const std::string nearest = nearest_word(entry.key, here);
   std::string elsewhere;
-  for (const Table* other : all_tables())
+  for (const Table* other : all_tables(root_))
     if (other != &table && other->find(entry.key) != nullptr && elsewhere.empty())
       elsewhere = other->path.empty() ? "the top level" : fmt::format("'{}'", other->path);
   if (!elsewhere.empty())

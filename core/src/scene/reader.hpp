@@ -10,7 +10,9 @@ namespace pileus::scene {
 
 class Reader {
  public:
-  Reader(Scene& scene, Problems& problems) : scene_(scene), problems_(problems) {}
+  /// `root` is the table of the whole file, where misplaced keys are looked for.
+  Reader(Scene& scene, Problems& problems, const Table& root = scene_table())
+      : scene_(scene), problems_(problems), root_(root) {}
 
   /// Reads a mapping into the object behind a table.
   void section(const Node& node, const Table& table, void* object);
@@ -52,6 +54,7 @@ class Reader {
 
   Scene& scene_;
   Problems& problems_;
+  const Table& root_;
 };
 
 }  // namespace pileus::scene

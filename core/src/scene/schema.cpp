@@ -237,6 +237,19 @@ void move_requirements(Json& schema) {
 
 }  // namespace
 
+std::string file_schema(const std::string& title, const Table& table, const void* defaults) {
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  schema.update(section_schema(table, defaults));
+  schema["type"] = "object";
+  if (schema.contains("required")) {
+    schema["if"] = {{"required", Json::array({"extends"})}};
+    schema["then"] = Json::object();
+    schema["else"] = {{"required", schema["required"]}};
+    schema.erase("required");
+  }
+  return schema.dump(2) + "\n";
+}
+
 std::string scene_schema(std::span<const OperatorSchema> operators) {
   Scene defaults;
   defaults.background.reference_buoyancy.units = "m s-2";

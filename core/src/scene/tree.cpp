@@ -56,6 +56,32 @@ int character_count(std::string_view text) {
   }));
 }
 
+std::string flow_text(const Node& node) {
+  std::string text;
+  switch (node.kind) {
+    case Node::Kind::null:
+      return "~";
+    case Node::Kind::list:
+      for (const Node& item : node.items) text += (text.empty() ? "" : ", ") + flow_text(item);
+      return "[" + text + "]";
+    case Node::Kind::mapping:
+      for (const Entry& entry : node.entries)
+        text +=
+            fmt::format("{}{}: {}", text.empty() ? "" : ", ", entry.key, flow_text(entry.value));
+      return "{" + text + "}";
+    default:
+      break;
+  }
+  const bool plain = !node.quoted && !node.text.empty() &&
+                     node.text.find_first_of(",[]{}#:\"'\n&*!|>%@`") == std::string::npos;
+  if (plain) return node.text;
+  for (const char c : node.text) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return '"' + text + '"';
+}
+
 Location place_of(const std::string& file, const std::vector<std::string>& lines, int line,
                   int byte_column) {
   line = std::max(0, line);

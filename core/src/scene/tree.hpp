@@ -15,6 +15,9 @@ std::size_t count_nodes(const Node& node);
 /// Gives every value of the tree one place (that of the alias that stands for it).
 void relocate(Node& node, const Location& where);
 
+/// A value on one line, as YAML reads it back: what can follow `--set key=`.
+std::string flow_text(const Node& node);
+
 /// A place from yaml-cpp's zero-based line and byte column: counted from 1, in characters.
 Location place_of(const std::string& file, const std::vector<std::string>& lines, int line,
                   int byte_column);

@@ -111,14 +111,15 @@ std::string scene_schema(const host::SearchPath& search) {
   return scene::scene_schema(operators);
 }
 
-std::string key_reference(const std::string& schema) {
+std::string key_reference(const std::string& kind, const std::string& schema) {
   const Json root = Json::parse(schema);
   const Json definitions = root.value("definitions", Json::object());
-  std::string page =
-      "# Keys of a scene\n\n"
-      "Made by `pileus schema --reference` from the declarations that validate scenes; a test\n"
+  std::string page = fmt::format(
+      "# Keys of a {0}\n\n"
+      "Made by `pileus schema {1}--reference` from the declarations that validate them; a test\n"
       "keeps it up to date. Numbers may carry a unit (`33 m`) and may be formulas of the scene's\n"
-      "constants. Keys that begin with `x-` are notes and are not read.\n";
+      "constants. Keys that begin with `x-` are notes and are not read.\n",
+      kind, kind == "scene" ? "" : kind + " ");
   std::string top;
   for (const auto& [key, value] : root.at("properties").items()) {
     if (section_of(value, definitions) == nullptr) top += row(key, value);

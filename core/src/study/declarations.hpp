@@ -10,7 +10,7 @@ namespace pileus::study {
 /// search path, ordered by id. Throws Error(plugin) when a library cannot be loaded.
 std::string scene_schema(const host::SearchPath& search);
 
-/// The reference of all keys of a scene as Markdown, from such a schema.
-std::string key_reference(const std::string& schema);
+/// The reference of all keys of a kind of file ("scene", "study") as Markdown, from its schema.
+std::string key_reference(const std::string& kind, const std::string& schema);
 
 }  // namespace pileus::study
