@@ -96,6 +96,7 @@ int run(int argc, char** argv) {
       "me.");
   Action action;
   add_run(app, action);
+  add_plan(app, action);
   add_check(app, action);
   add_study(app, action);
   add_report(app, action);

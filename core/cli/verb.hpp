@@ -11,6 +11,7 @@ namespace pileus::cli {
 using Action = std::function<ExitCode()>;
 
 void add_run(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_plugins(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);

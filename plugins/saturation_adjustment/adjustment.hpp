@@ -63,6 +63,13 @@ struct IdealAir {
     return excess > 0.0 ? excess : 0.0;
   }
 
+  /// The same where nothing saturates: b = b_l. Adding G·0 is not left out, since it turns −0 into
+  /// 0: the bits are those of `diagnose` with no liquid.
+  static void diagnose_unsaturated(std::int64_t count, const double* __restrict buoyancy_l,
+                                   double* __restrict buoyancy) {
+    for (std::int64_t p = 0; p < count; ++p) buoyancy[p] = buoyancy_l[p] + 0.0;
+  }
+
   /// Total buoyancy b = b_l + G q_l (m s-2) and liquid water of `count` parcels; no array overlaps
   /// another.
   void diagnose(std::int64_t count, const double* __restrict height,

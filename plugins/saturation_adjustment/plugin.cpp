@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* ideal = "thermodynamics == ideal";
 constexpr const char* real = "thermodynamics == real";
+constexpr const char* condensing = "effect.condensation == on";
 
 /// Temperatures below this are no air the saturation formula is meant for, K.
 constexpr double coldest = 100.0;
@@ -91,6 +92,7 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
     buoyancy_ = d.derives("buoyancy", "m s-2").range(-1e6, 1e6).doc("total buoyancy");
     liquid_ = d.derives("mass_fraction_of_cloud_liquid_water_in_air", "1")
                   .range(0.0, 1.0)
+                  .when(condensing)
                   .doc("liquid water");
     temperature_ =
         d.derives("air_temperature", "K").range(coldest, 1e4).when(real).doc("temperature");
@@ -104,37 +106,58 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   }
 
   void diagnose_ideal(Block block) const {
+    if (!block.has(liquid_)) {
+      IdealAir::diagnose_unsaturated(block.count(), block.in(buoyancy_l_), block.out(buoyancy_));
+      return;
+    }
     const IdealAir air{value(surface_humidity_), value(air_.base_height), value(scale_height_),
                        latent_buoyancy_};
     air.diagnose(block.count(), block.in(height_), block.in(buoyancy_l_), block.in(total_water_),
                  block.out(buoyancy_), block.out(liquid_));
   }
 
-  void diagnose_real(Block block) const {
+  /// Buoyancy and temperature of all parcels; `condense` gives the equilibrium of a parcel from its
+  /// position in the block, the Exner function and the liquid-water temperature.
+  template <class Condense>
+  void diagnose_real(Block block, Condense&& condense) const {
     const double* z = block.in(height_);
     const double* theta = block.in(theta_l_);
     const double* total = block.in(total_water_);
     double* b = block.out(buoyancy_);
-    double* wet = block.out(liquid_);
     double* t = block.out(temperature_);
-    const double kappa = constants_.kappa();
-    const double latent_over_heat = constants_.latent_heat / constants_.heat_capacity;
     const double scale = constants_.gravity / value(air_.buoyancy_temperature);
     block.each([&](auto p) {
       const thermo::ReferenceState::Point at = reference_->at(z[p]);
       const double temperature_l = at.exner * theta[p];
       if (!(temperature_l >= coldest)) refuse_cold(block.uid(p), z[p], temperature_l);
-      const double pressure = thermo::pressure_of_exner(at.exner, kappa);
+      const Equilibrium found = condense(p, at.exner, temperature_l);
+      t[p] = found.temperature;
+      const double theta_v = thermo::virtual_potential_temperature(
+          found.temperature / at.exner, total[p] - found.liquid, found.liquid);
+      b[p] = scale * (theta_v - at.theta_v);
+    });
+  }
+
+  void diagnose_real(Block block) const {
+    if (!block.has(liquid_)) {
+      diagnose_real(block, [](auto, double, double temperature_l) {
+        return Equilibrium{temperature_l, 0.0, 0};
+      });
+      return;
+    }
+    const double* total = block.in(total_water_);
+    double* wet = block.out(liquid_);
+    const double kappa = constants_.kappa();
+    const double latent_over_heat = constants_.latent_heat / constants_.heat_capacity;
+    diagnose_real(block, [&](auto p, double exner, double temperature_l) {
+      const double pressure = thermo::pressure_of_exner(exner, kappa);
       const Equilibrium found =
           adjust(temperature_l, total[p], latent_over_heat, [&](double kelvin) {
             return thermo::saturation_specific_humidity(
                 thermo::saturation_pressure(kelvin, formula_), pressure, constants_.epsilon);
           });
       wet[p] = found.liquid;
-      t[p] = found.temperature;
-      const double theta_v = thermo::virtual_potential_temperature(
-          found.temperature / at.exner, total[p] - found.liquid, found.liquid);
-      b[p] = scale * (theta_v - at.theta_v);
+      return found;
     });
   }
 

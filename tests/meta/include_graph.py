@@ -28,7 +28,7 @@ HOMES = {
     "dlfcn.h": {"host"},
     "CLI": {"cli"},
     "Eigen": {"mesh", "parcels", "dynamics"},
-    "boost": {"dynamics", "parcels", "scene", "study"},
+    "boost": {"dynamics", "parcels", "planner", "scene", "study"},
     "nlohmann": {"scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
     "fmt": {"base", "scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
 }

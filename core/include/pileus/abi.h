@@ -102,7 +102,11 @@ enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* compariso
 /* clang-format on */
 
 /* `when`, wherever it stands: NULL (always), or comparisons of a choice, switch or integer
- * parameter with a literal, joined by " and ":  "thermodynamics == real",  "ice != false". */
+ * parameter with a literal, joined by " and ":  "thermodynamics == real",  "ice != false".
+ * In the `when` of a quantity a term may also ask for an effect that the operator provides:
+ * "effect.condensation == on". Where an effect is off, its quantities do not exist (their views
+ * are NULL), and the operator leaves out the work for them; where it is watched, they begin to be
+ * handed over when it is switched on. */
 
 typedef struct pileus_quantity { /* its position in `quantities` is its slot number */
   uint32_t size, place, type, components, access, nature, on_merge, on_split;

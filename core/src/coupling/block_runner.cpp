@@ -1,8 +1,11 @@
 #include "coupling/block_runner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <string>
 
 namespace pileus::coupling {
 namespace {
@@ -78,7 +81,7 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, boo
       views[s].count = static_cast<std::int64_t>(surface_.columns());
       continue;
     }
-    const int column = slot.column;
+    const int column = slot.withheld ? -1 : slot.column;
     const bool writable = slot.writable && slot.derived == diagnosing;
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
     views[s].data = column >= 0 ? store_.column(column) + range.begin : nullptr;
@@ -103,6 +106,7 @@ bool BlockRunner::diagnose(std::size_t which, const pileus_step& step, const Par
   a.calls = 1;
   for (std::size_t s : bound.derived) {
     if (!a.last.ok()) break;
+    if (bound.slots[s].withheld) continue;
     violates(store_.column(bound.slots[s].column) + range.begin, range.count, {}, bound.slots[s], s,
              a.record.uid, a.last);
   }
@@ -201,6 +205,45 @@ bool BlockRunner::apply(std::size_t which, const pileus_step& step, const Parcel
   counts.parcels += active.active();
   counts.seconds += seconds_since(start);
   return done;
+}
+
+void BlockRunner::audit(std::size_t which, const pileus_step& step, const ParcelRange& range,
+                        std::span<const std::uint32_t> skipped, Workspace& work) const {
+  Attempt a{which, operators_[which], step, range, work, block(which, range, false, work)};
+  snapshot(a);
+  std::fill(work.attempt.begin(), work.attempt.end(), 0.0);
+  a.last = call_once(a, skipped, step);
+  AuditFinding finding;
+  find_difference(a, finding);
+  restore(a, {});
+  if (finding.found() && finding.block < work.finding.block) work.finding = finding;
+}
+
+/// What a call changed that should have changed nothing, byte by byte.
+void BlockRunner::find_difference(const Attempt& a, AuditFinding& finding) const {
+  const auto report = [&](std::uint64_t uid, const std::string& what) {
+    finding = {a.range.block, a.which, uid, what};
+  };
+  if (!a.last.ok()) {
+    return report(a.last.error.uid, std::string("fails: ") + a.last.error.text);
+  }
+  for (std::size_t w = 0; w < a.bound.written.size(); ++w) {
+    const std::size_t slot = a.bound.written[w];
+    if (a.bound.slots[slot].withheld) continue;
+    const double* now = store_.column(a.bound.slots[slot].column) + a.range.begin;
+    const double* before = a.work.snapshot.data() + w * a.work.snapshot_stride;
+    for (std::size_t i = 0; i < a.range.count; ++i) {
+      if (std::memcmp(now + i, before + i, sizeof(double)) == 0) continue;
+      std::array<char, 160> text{};
+      std::snprintf(text.data(), text.size(), "takes its %s from %.17g to %.17g",
+                    a.bound.entry->table->quantities[slot].name, before[i], now[i]);
+      return report(a.record.uid[i], text.data());
+    }
+  }
+  for (std::size_t b = 0; b < a.bound.entry->table->budgets.size(); ++b) {
+    if (a.work.attempt[b] != 0)
+      report(a.record.uid[0], "books a source of " + a.bound.entry->table->budgets[b]);
+  }
 }
 
 void BlockRunner::snapshot(const Attempt& a) const {

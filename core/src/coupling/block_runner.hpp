@@ -43,6 +43,11 @@ class BlockRunner {
   bool apply(std::size_t which, const pileus_step& step, const ParcelRange& range,
              const ActiveParcels& active, Workspace& work, BlockBooks* books) const;
 
+  /// Calls the apply hook on parcels of the range that were found inactive (`skipped`, empty: all)
+  /// and puts everything back. What they would have changed goes to work.finding.
+  void audit(std::size_t which, const pileus_step& step, const ParcelRange& range,
+             std::span<const std::uint32_t> skipped, Workspace& work) const;
+
   /// A record over the range in which derived quantities (`diagnosing`) or all others are
   /// writable as declared. It refers to `work`.
   pileus_block block(std::size_t which, const ParcelRange& range, bool diagnosing,
@@ -59,6 +64,7 @@ class BlockRunner {
   void snapshot(const Attempt& a) const;
   void restore(const Attempt& a, std::span<const std::uint32_t> list) const;
   void book(const Attempt& a, BlockBooks* books) const;
+  void find_difference(const Attempt& a, AuditFinding& finding) const;
   void record_failure(const Attempt& a, std::span<const std::uint32_t> list,
                       bool in_diagnose) const;
 

@@ -29,7 +29,7 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
     slot.high = row.high;
     slot.derived = row.nature == PILEUS_DERIVED;
     slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
-    const bool exists = host::holds(table.quantity_when[i], bound.entry->values.numbers());
+    const bool exists = bound.entry->exists(i);
     if (exists && row.place == PILEUS_SURFACE) {
       bind_surface_slot(bound, i, store, surface, slot);
     } else if (exists) {
@@ -88,6 +88,13 @@ void bind_budgets(BoundOperator& bound) {
 
 }  // namespace
 
+void follow_effects(BoundOperator& bound) {
+  bound.dormant = bound.entry->is_dormant();
+  for (std::size_t i = 0; i < bound.slots.size(); ++i) {
+    bound.slots[i].withheld = bound.slots[i].column >= 0 && !bound.entry->hands_over(i);
+  }
+}
+
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
                             const SurfaceFields& surface, std::uint32_t stream,
                             const std::atomic<bool>* stop) {
@@ -102,6 +109,7 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   bound.entry = &entry;
   bound.stream = stream;
   bind_slots(bound, store, surface);
+  follow_effects(bound);
   bind_conditions(bound);
   bind_budgets(bound);
   bound.instance = std::make_unique<host::Instance>(entry.table, stop);

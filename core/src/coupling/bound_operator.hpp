@@ -17,6 +17,7 @@ struct BoundSlot {
   int surface = -1;      // position among the surface fields; −1: none of them
   bool derived = false;  // written by diagnose; every other writable slot by apply
   bool writable = false;
+  bool withheld = false;  // exists, but its effect waits to be switched on
   double low = 0, high = 0;
 };
 
@@ -47,10 +48,14 @@ struct BoundOperator {
   /// Whose change makes diagnose or the conditions stale: columns of the store, and the surface
   /// fields counted on from there.
   std::vector<int> read_columns;
+  bool dormant = false;  // not called: all its effects wait to be switched on
 
   const pileus_operator& op() const { return entry->table->op; }
   bool is_local() const { return op().scope == PILEUS_LOCAL; }
 };
+
+/// Takes over which effects of the entry are on: at the start, and when one is switched on.
+void follow_effects(BoundOperator& bound);
 
 /// Binds an operator to the store's columns and to the surface.
 /// Errors  Error(ExitCode::usage) if a quantity has no column in this store (y_position in 2D), or

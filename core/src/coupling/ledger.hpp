@@ -41,12 +41,22 @@ struct OperatorLedger {
   bool closure = false;
   std::uint64_t calls = 0;    // of hooks on blocks
   std::uint64_t parcels = 0;  // handed over, summed over calls
-  std::uint64_t skipped = 0;  // found inactive
+  // Found inactive: because nothing had changed, by the extrema of their block, by their values.
+  std::uint64_t skipped_by_epoch = 0, skipped_by_bounds = 0, skipped_by_list = 0;
+  std::uint64_t audited = 0;  // of the skipped, called after all to compare
   std::uint64_t retries = 0;
   std::uint64_t repairs = 0;  // reported by the plugin
   double core_seconds = 0;    // summed over threads
   std::vector<OperatorBudget> budgets;
   std::vector<host::Span> spans;  // timers of the plugin's own
+
+  std::uint64_t skipped() const { return skipped_by_epoch + skipped_by_bounds + skipped_by_list; }
+  /// Time the skipped parcels would have cost at the price of the others, s.
+  double seconds_saved() const {
+    return parcels > 0
+               ? core_seconds / static_cast<double>(parcels) * static_cast<double>(skipped())
+               : 0.0;
+  }
 };
 
 /// Total of a closed sum over all parcels.

@@ -43,7 +43,34 @@ int read_substeps(const scene::OperatorBlock& block, scene::Problems& problems) 
   return 0;
 }
 
+/// Whether a quantity's `when` holds with watched effects on or off.
+bool holds_with(const OperatorEntry& entry, std::size_t quantity, bool watched) {
+  std::vector<std::uint8_t> on;
+  for (const EffectState state : entry.effects)
+    on.push_back(state == EffectState::on || (watched && state == EffectState::watched) ? 1 : 0);
+  return host::holds(entry.table->quantity_when[quantity], entry.values.numbers(),
+                     on.empty() ? nullptr : on.data());
+}
+
 }  // namespace
+
+bool OperatorEntry::exists(std::size_t quantity) const {
+  return holds_with(*this, quantity, true);
+}
+
+bool OperatorEntry::hands_over(std::size_t quantity) const {
+  return holds_with(*this, quantity, false);
+}
+
+bool OperatorEntry::is_dormant() const {
+  bool any = false;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    if (table->effects[i].role != PILEUS_PROVIDES) continue;
+    if (effects[i] == EffectState::on) return false;
+    any = any || effects[i] == EffectState::watched;
+  }
+  return any;
+}
 
 std::vector<OperatorEntry> load_operators(const scene::Scene& scene, const host::SearchPath& search,
                                           scene::Problems& problems) {
@@ -54,7 +81,7 @@ std::vector<OperatorEntry> load_operators(const scene::Scene& scene, const host:
     host::ParameterValues values = read_parameters(block, *table, scene, problems);
     std::string name = block.name.empty() ? std::string(table->op.id) : block.name;
     const int substeps = read_substeps(block, problems);
-    entries.push_back({std::move(name), std::move(table), std::move(values), substeps});
+    entries.push_back({std::move(name), std::move(table), std::move(values), substeps, {}});
   }
   return entries;
 }

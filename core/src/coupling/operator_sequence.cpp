@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
 #include "base/parallel.hpp"
+#include "coupling/audit.hpp"
 #include "coupling/failure_report.hpp"
 
 namespace pileus::coupling {
@@ -185,6 +186,7 @@ void OperatorSequence::prepare_workspaces() {
   const std::size_t blocks = std::max<std::size_t>(block_count(), 1);
   if (block_books_.size() < blocks * budgets) block_books_.resize(blocks * budgets);
   if (block_active_.size() < blocks) block_active_.resize(blocks);
+  bounds_.prepare(bound_, store_->column_count(), blocks);
 }
 
 std::size_t OperatorSequence::block_count() const {
@@ -218,7 +220,42 @@ std::uint64_t OperatorSequence::version_of(const std::vector<int>& columns) cons
 
 void OperatorSequence::population_changed() {
   std::fill(versions_.begin(), versions_.end(), next_version_++);
+  withheld_stale_ = true;
   if (store_ != nullptr) prepare_workspaces();
+}
+
+bool OperatorSequence::activate(const std::string& effect) {
+  bool found = false;
+  for (std::size_t which = 0; which < operators_.size(); ++which) {
+    OperatorEntry& entry = operators_[which];
+    bool mine = false;
+    for (std::size_t i = 0; i < entry.effects.size(); ++i) {
+      if (entry.effects[i] != EffectState::watched || effect != entry.table->effects[i].name)
+        continue;
+      entry.effects[i] = EffectState::on;
+      mine = true;
+    }
+    if (!mine || which >= bound_.size()) continue;
+    follow_effects(bound_[which]);
+    progress_[which].diagnosed_at = 0;
+    progress_[which].idle_at = 0;
+    found = true;
+  }
+  return found;
+}
+
+/// What a watched effect would derive is nothing until it is switched on; zeros stand for it in
+/// outputs and for operators that read it.
+void OperatorSequence::clear_withheld() {
+  if (!withheld_stale_) return;
+  withheld_stale_ = false;
+  for (const BoundOperator& bound : bound_) {
+    for (const std::size_t s : bound.derived) {
+      if (bound.dormant || bound.slots[s].withheld) {
+        std::fill_n(store_->column(bound.slots[s].column), store_->size(), 0.0);
+      }
+    }
+  }
 }
 
 /// Transport changes position, shape and vorticity, nothing else.
@@ -241,9 +278,11 @@ void OperatorSequence::remember_heights() {
 
 /// Runs the closures whose inputs have changed since they last ran, and those that depend on them.
 void OperatorSequence::refresh(const StepTime& step) {
+  clear_withheld();
   stale_.clear();
   for (const std::size_t which : plan_.closures) {
     const BoundOperator& bound = bound_[which];
+    if (bound.dormant) continue;
     const std::uint64_t version = version_of(bound.read_columns);
     if (version <= progress_[which].diagnosed_at) continue;
     progress_[which].diagnosed_at = version;
@@ -302,17 +341,22 @@ void OperatorSequence::apply_after_transport(const StepTime& step) {
 /// If nothing the conditions read has changed since they were false for every parcel, they are
 /// false still: one comparison.
 bool OperatorSequence::skip_by_epoch(std::size_t which) {
-  if (!options_.skip_inactive || bound_[which].entry->table->active_if.empty()) return false;
+  if (!options_.coupling.skip_inactive || bound_[which].entry->table->active_if.empty())
+    return false;
   const OperatorProgress& progress = progress_[which];
   if (progress.idle_at == 0 || version_of(progress.condition_columns) > progress.idle_at)
     return false;
-  workspaces_.front().applied[which].skipped += store_->size();
+  workspaces_.front().applied[which].skipped_by_epoch += store_->size();
   return true;
 }
 
 void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_half) {
+  if (bound_[which].dormant) return;
   refresh(at);
-  if (skip_by_epoch(which)) return;
+  if (skip_by_epoch(which)) {
+    audit_idle(which, step_record(bound_[which], at, second_half));
+    return;
+  }
   const int substeps = prepare(which, at, second_half);
   pileus_step step = step_record(bound_[which], at, second_half);
   step.dt = at.dt / substeps;
@@ -360,10 +404,8 @@ void OperatorSequence::apply_once(std::size_t which, const pileus_step& step) {
   const auto run = [&](std::size_t block, const ParcelRange& range, Workspace& work) {
     BlockBooks* books = block_books_.data() + block * budgets;
     std::fill_n(books, budgets, BlockBooks{});
-    const ActiveParcels active = options_.skip_inactive
-                                     ? find_active(bound, *store_, range.begin, range.count, work)
-                                     : ActiveParcels{0, range.count, {}};
-    work.applied[which].skipped += range.count - active.active();
+    const ActiveParcels active = find_active_parcels(which, range, work);
+    audit_block(which, step, range, active, work);
     block_active_[block] = active.count > 0 ? 1 : 0;
     if (active.count > 0) runner_->apply(which, step, range, active, work, books);
   };
@@ -377,7 +419,25 @@ void OperatorSequence::apply_once(std::size_t which, const pileus_step& step) {
     });
   }
   throw_first_failure();
+  throw_first_finding();
   close_books(which, blocks);
+}
+
+/// Parcels to call the operator for, the cheapest way to exclude the others first.
+ActiveParcels OperatorSequence::find_active_parcels(std::size_t which, const ParcelRange& range,
+                                                    Workspace& work) {
+  if (!options_.coupling.skip_inactive) return {0, range.count, {}};
+  const BoundOperator& bound = bound_[which];
+  OperatorCounts& counts = work.applied[which];
+  if (range.block >= 0 &&
+      bounds_.rule_out(bound, *store_, versions_, static_cast<std::size_t>(range.block),
+                       range.begin, range.count)) {
+    counts.skipped_by_bounds += range.count;
+    return {0, 0, {}};
+  }
+  const ActiveParcels active = find_active(bound, *store_, range.begin, range.count, work);
+  counts.skipped_by_list += range.count - active.active();
+  return active;
 }
 
 void OperatorSequence::close_books(std::size_t which, std::size_t blocks) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/block_bounds.hpp"
 #include "coupling/block_runner.hpp"
 #include "coupling/failure.hpp"
 #include "coupling/ledger.hpp"
@@ -38,7 +39,6 @@ struct SequenceOptions {
   std::vector<std::string> initial;  // scalars the initial state sets
   std::uint64_t seed = 0;
   const std::atomic<bool>* stop = nullptr;  // answers the plugins' should_stop
-  bool skip_inactive = true;                // false: call operators on every parcel
 };
 
 /// The grid record plugins see.
@@ -101,6 +101,9 @@ class OperatorSequence {
   /// To be called after merge, split, sort: parcels are other ones than before.
   void population_changed();
 
+  /// Switches a watched effect on, from the next call of a hook on. True if an operator waited.
+  bool activate(const std::string& effect);
+
   /// Largest step the operators can take with their most sub-steps, s; infinite without a limit.
   double dt_limit() const;
 
@@ -121,10 +124,16 @@ class OperatorSequence {
   bool skip_by_epoch(std::size_t which);
   int prepare(std::size_t which, const StepTime& at, bool second_half);
   void apply_once(std::size_t which, const pileus_step& step);
+  ActiveParcels find_active_parcels(std::size_t which, const ParcelRange& range, Workspace& work);
+  void audit_block(std::size_t which, const pileus_step& step, const ParcelRange& range,
+                   const ActiveParcels& active, Workspace& work);
+  void audit_idle(std::size_t which, const pileus_step& step);
+  void throw_first_finding();
   void close_books(std::size_t which, std::size_t blocks);
   std::uint64_t version_of(const std::vector<int>& columns) const;
   void touch_core();
   void remember_heights();
+  void clear_withheld();
   void throw_first_failure();
   [[noreturn]] void fail(const BlockFailure& failure, const char* phase);
   std::size_t block_count() const;
@@ -141,6 +150,7 @@ class OperatorSequence {
   int previous_height_ = -1;  // column, if an operator asks for it
   std::vector<BoundOperator> bound_;
   std::unique_ptr<BlockRunner> runner_;
+  BlockBounds bounds_;
   std::vector<std::size_t> stale_;          // closures to run now
   std::vector<Workspace> workspaces_;       // per thread
   Workspace whole_;                         // for calls with all parcels
@@ -149,6 +159,7 @@ class OperatorSequence {
   std::vector<std::uint8_t> block_active_;  // per block: the present call did something
   std::vector<std::uint64_t> versions_;     // per column and surface field, raised by changes
   std::uint64_t next_version_ = 1;
+  bool withheld_stale_ = true;  // derived quantities of watched effects need their zeros again
 };
 
 }  // namespace pileus::coupling

@@ -68,7 +68,7 @@ class Planner {
       const host::OperatorTable& table = *entry.table;
       for (std::size_t i = 0; i < table.quantities.size(); ++i) {
         const pileus_quantity& row = table.quantities[i];
-        if (!host::holds(table.quantity_when[i], entry.values.numbers())) continue;
+        if (!entry.exists(i)) continue;
         if (!check_support(entry, row)) continue;
         if (row.place == PILEUS_PARCEL && is_core_quantity(row.name)) continue;
         check_units(entry, row);

@@ -46,7 +46,10 @@ Ledger OperatorSequence::ledger() const {
     collect(whole_);
     entry.calls = counts.calls;
     entry.parcels = counts.parcels;
-    entry.skipped = counts.skipped;
+    entry.skipped_by_epoch = counts.skipped_by_epoch;
+    entry.skipped_by_bounds = counts.skipped_by_bounds;
+    entry.skipped_by_list = counts.skipped_by_list;
+    entry.audited = counts.audited;
     entry.retries = counts.retries;
     entry.core_seconds = counts.seconds;
     for (std::size_t b = 0; b < table.budgets.size() && which < progress_.size(); ++b) {

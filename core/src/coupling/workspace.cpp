@@ -35,6 +35,7 @@ void Workspace::reserve(const std::vector<BoundOperator>& operators, std::size_t
   snapshot_stride = (parcels + 7) / 8 * 8;
   snapshot.discard_and_resize(columns * snapshot_stride);
   active.resize(parcels);
+  skipped.reserve(parcels);
   mask.resize(parcels);
   clause_mask.resize(parcels);
   everyone.resize(parcels);

@@ -176,6 +176,21 @@ double literal(const pileus_parameter& p, std::string_view text) {
   return p.type == PILEUS_INTEGER && whole ? value : std::nan("");
 }
 
+/// Parses what follows "effect.": "name == on" or "name != on".
+void parse_effect_term(const std::string& name, std::string_view word, bool equal,
+                       const std::string& place, const OperatorTable& t, When& when,
+                       Complaints& c) {
+  if (word != "on")
+    return c.add(place, "has a condition on an effect that is not compared with on");
+  for (std::size_t i = 0; i < t.effects.size(); ++i) {
+    const pileus_effect& effect = t.effects[i];
+    if (effect.role == PILEUS_PROVIDES && effect.name != nullptr && name == effect.name) {
+      return when.push_back({static_cast<std::uint32_t>(i), equal, 1.0, true});
+    }
+  }
+  c.add(place, "has a condition on the effect '" + name + "', which the operator does not provide");
+}
+
 /// Parses "parameter == literal"; adds a complaint if it is anything else.
 void parse_term(std::string_view text, const std::string& place, const OperatorTable& t, When& when,
                 Complaints& c) {
@@ -184,6 +199,11 @@ void parse_term(std::string_view text, const std::string& place, const OperatorT
     return c.add(place, "has a condition that is not 'parameter == value' or 'parameter != value'");
   }
   const std::string name(text.substr(0, sign)), word(text.substr(sign + 4));
+  constexpr std::string_view effect = "effect.";
+  if (name.starts_with(effect)) {
+    return parse_effect_term(name.substr(effect.size()), word, text[sign + 1] == '=', place, t,
+                             when, c);
+  }
   const int parameter = t.find_parameter(name);
   if (parameter < 0) return c.add(place, "has a condition on the unknown parameter '" + name + "'");
   const double value = literal(t.parameters[static_cast<std::size_t>(parameter)], word);
@@ -253,15 +273,24 @@ void check_rows(OperatorTable& t, Complaints& c) {
   check_unique(t.parameters, "parameter", c);
 }
 
+/// Parameters and effects are there before anybody knows which effects are on.
+void require_parameters(const When& when, const std::string& place, Complaints& c) {
+  const bool on_effect =
+      std::any_of(when.begin(), when.end(), [](const WhenTerm& term) { return term.is_effect; });
+  c.require(!on_effect, place, "depends on an effect; only quantities may");
+}
+
 void parse_conditions(OperatorTable& t, Complaints& c) {
   for (const pileus_quantity& q : t.quantities) {
     t.quantity_when.push_back(parse_when(q.when, label("quantity", q.name, 0), t, c));
   }
   for (const pileus_parameter& p : t.parameters) {
     t.parameter_when.push_back(parse_when(p.when, label("parameter", p.name, 0), t, c));
+    require_parameters(t.parameter_when.back(), label("parameter", p.name, 0), c);
   }
   for (const pileus_effect& e : t.effects) {
     t.effect_when.push_back(parse_when(e.when, label("effect", e.name, 0), t, c));
+    require_parameters(t.effect_when.back(), label("effect", e.name, 0), c);
   }
 }
 
@@ -281,10 +310,18 @@ int OperatorTable::find_quantity(std::string_view name) const {
   return -1;
 }
 
-bool holds(const When& when, const double* numbers) {
+bool holds(const When& when, const double* numbers, const std::uint8_t* effects) {
   return std::all_of(when.begin(), when.end(), [&](const WhenTerm& term) {
-    return (numbers[term.parameter] == term.value) == term.equal;
+    if (term.is_effect) return (effects == nullptr || effects[term.index] != 0) == term.equal;
+    return (numbers[term.index] == term.value) == term.equal;
   });
+}
+
+std::optional<When> read_condition(const std::string& text, const OperatorTable& table) {
+  std::vector<std::string> list;
+  Complaints complaints(list);
+  const When when = parse_when(text.c_str(), "condition", table, complaints);
+  return list.empty() ? std::optional<When>(when) : std::nullopt;
 }
 
 OperatorTable read_operator(const pileus_operator* row, std::vector<std::string>& list) {

@@ -1,6 +1,7 @@
 // An operator's declarations, checked and copied out of the library's tables.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,11 +10,12 @@
 
 namespace pileus::host {
 
-/// One comparison of a `when`: a parameter against a literal.
+/// One comparison of a `when`: a parameter against a literal, or an effect against "on".
 struct WhenTerm {
-  std::uint32_t parameter;  // index
-  bool equal;               // ==, else !=
-  double value;             // the literal as pileus_values.number holds it
+  std::uint32_t index;  // of the parameter or effect
+  bool equal;           // ==, else !=
+  double value;         // the literal as pileus_values.number holds it; 1 for "on"
+  bool is_effect = false;
 };
 /// All terms must hold; no term: always.
 using When = std::vector<WhenTerm>;
@@ -40,8 +42,13 @@ struct OperatorTable {
   int find_quantity(std::string_view name) const;
 };
 
-/// True if all terms hold for the given parameter numbers.
-bool holds(const When& when, const double* numbers);
+/// True if all terms hold for the given parameter numbers; `effects` says which of the operator's
+/// effects are on, NULL: all.
+bool holds(const When& when, const double* numbers, const std::uint8_t* effects = nullptr);
+
+/// A condition in the syntax of `when` on this operator; nothing if it names a parameter or a value
+/// that the operator does not have.
+std::optional<When> read_condition(const std::string& text, const OperatorTable& table);
 
 /// Checks every row of an operator's tables and copies them.
 ///

@@ -10,8 +10,11 @@
 
 #include "base/error.hpp"
 #include "base/signals.hpp"
+#include "model/activation_record.hpp"
 #include "model/failure_files.hpp"
 #include "model/provenance.hpp"
+#include "output/posix_file.hpp"
+#include "planner/plan_text.hpp"
 
 namespace pileus::model {
 namespace {
@@ -41,13 +44,14 @@ constexpr double status_interval = 1.0;  // s of wall time between updates of st
 
 }  // namespace
 
-Loop::Loop(const scene::Scene& scene, std::vector<coupling::OperatorEntry> operators,
-           const output::RunDirectory& directory, Progress& progress)
+Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirectory& directory,
+           Progress& progress)
     : scene_(scene),
       directory_(directory),
       progress_(progress),
-      sequence_(std::move(operators), sequence_options(scene)),
-      physics_(sequence_),
+      plan_(std::move(planned.plan)),
+      sequence_(std::move(planned.operators), sequence_options(scene)),
+      physics_(sequence_, planner::Tripwires(plan_)),
       simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
   sequence_.bind(simulation_->store(), simulation_->plugin_grid());
   diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface());
@@ -59,7 +63,7 @@ Loop::~Loop() = default;
 
 void Loop::open_streams(output::Start start) {
   streams_ = std::make_unique<OutputStreams>(scene_, *simulation_, sequence_.surface(), *record_,
-                                             directory_, run_provenance(scene_), start);
+                                             directory_, run_provenance(scene_, plan_), start);
 }
 
 void Loop::start(bool overwrite) {
@@ -71,6 +75,7 @@ void Loop::start(bool overwrite) {
     directory_.remove_previous_run();
   }
   open_streams(output::Start::fresh());
+  output::replace_file(directory_ / "plan.json", planner::plan_json(plan_));
   totals_.parcels_initial = simulation_->store().size();
   initial_budgets_ = sequence_.ledger().totals;
 }
@@ -83,6 +88,8 @@ bool Loop::resume() {
   simulation_->restore(checkpoint.data);
   physics_.resume_at(checkpoint.step);
   sequence_.surface().restore(checkpoint.data.arrays);
+  restore_activations(checkpoint.data, physics_);
+  activations_reported_ = physics_.activations().size();
   sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt});
   sequence_.restore_books(checkpoint.data.arrays.at("books"));
   record_->restore(checkpoint.data, checkpoint.time);
@@ -90,6 +97,7 @@ bool Loop::resume() {
   // The record of the checkpoint's own time is written again: a checkpoint precedes its outputs.
   open_streams(output::Start::resume_at(std::nextafter(checkpoint.time, -1.0)));
   streams_->resume(*record_);
+  output::replace_file(directory_ / "plan.json", planner::plan_json(plan_));
   progress_.message(fmt::format("continuing from {} (t = {:.6g} s, step {})",
                                 path->filename().string(), checkpoint.time, checkpoint.step));
   if (checkpoint.data.texts.at("scene") != scene_.resolved_yaml)
@@ -147,6 +155,7 @@ void Loop::advance() {
     const double seconds = seconds_since(step_started);
     seconds_per_step_ = seconds_per_step_ > 0 ? 0.9 * seconds_per_step_ + 0.1 * seconds : seconds;
     report_progress(allowed);
+    report_activations();
   }
   observe_and_begin(simulation_->time(), true);
   streams_->flush_series(*record_);
@@ -238,6 +247,7 @@ void Loop::checkpoint() {
   save_totals(checkpoint.data);
   checkpoint.data.arrays["books"] = sequence_.books();
   checkpoint.data.arrays.merge(sequence_.surface().named_values());
+  save_activations(physics_, checkpoint.data);
   checkpoint.data.texts["scene"] = scene_.resolved_yaml;
   checkpoint.data.texts["version"] = std::string(build_record().version);
   checkpoint.data.texts["commit"] = std::string(build_record().commit);
@@ -290,6 +300,15 @@ void Loop::report_progress(const dynamics::TimeStep& allowed) {
   if (seconds_since(last_status_) < status_interval) return;
   write_status("running");
   last_status_ = Clock::now();
+}
+
+void Loop::report_activations() {
+  const auto& all = physics_.activations();
+  for (; activations_reported_ < all.size(); ++activations_reported_) {
+    const Activation& one = all[activations_reported_];
+    progress_.message(fmt::format("t = {:.6g} s, step {}: {} switched on; {}", one.time, one.step,
+                                  one.effect, one.because));
+  }
 }
 
 void Loop::write_status(const char* state) const {

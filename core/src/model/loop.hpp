@@ -10,6 +10,7 @@
 #include "model/diagnostics.hpp"
 #include "model/operator_physics.hpp"
 #include "model/output_streams.hpp"
+#include "model/plan_run.hpp"
 #include "model/record.hpp"
 #include "model/simulation.hpp"
 #include "output/run_directory.hpp"
@@ -27,9 +28,9 @@ struct LoopTotals {
 
 class Loop {
  public:
-  /// `operators` have been loaded and checked; everything lives as long as the loop.
-  Loop(const scene::Scene& scene, std::vector<coupling::OperatorEntry> operators,
-       const output::RunDirectory& directory, Progress& progress);
+  /// The scene, the folder and the progress outlive the loop.
+  Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirectory& directory,
+       Progress& progress);
   ~Loop();
 
   /// A new run. Files of an earlier run in the folder are replaced when `overwrite`.
@@ -54,11 +55,15 @@ class Loop {
   void save_totals(output::NamedData& data) const;
   void restore_totals(const output::NamedData& data);
   void report_progress(const dynamics::TimeStep& allowed);
+  void report_activations();
+  double share_of_run(double seconds) const;
+  std::vector<output::EffectSummary> effect_summaries(const coupling::Ledger& ledger) const;
   void write_status(const char* state) const;
 
   const scene::Scene& scene_;
   const output::RunDirectory& directory_;
   Progress& progress_;
+  planner::Plan plan_;
   coupling::OperatorSequence sequence_;
   OperatorPhysics physics_;
   std::unique_ptr<Simulation> simulation_;
@@ -72,6 +77,7 @@ class Loop {
   std::chrono::steady_clock::time_point started_, last_checkpoint_, last_status_;
   double seconds_per_step_ = 0;
   std::uint64_t steps_since_checkpoint_ = 0;
+  std::size_t activations_reported_ = 0;
 };
 
 }  // namespace pileus::model

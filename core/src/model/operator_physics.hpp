@@ -1,25 +1,50 @@
-// The operators of a run as the simulation sees them.
+// The operators of a run as the simulation sees them, and the watch over what was left out.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "coupling/operator_sequence.hpp"
 #include "model/simulation.hpp"
+#include "planner/tripwire.hpp"
 
 namespace pileus::model {
+
+/// An effect that was switched on while the run went on.
+struct Activation {
+  std::string effect;
+  double time = 0;  // s
+  std::uint64_t step = 0;
+  std::string because;  // one sentence
+};
 
 class OperatorPhysics final : public Physics {
  public:
   /// `sequence` must outlive this.
-  explicit OperatorPhysics(coupling::OperatorSequence& sequence) : sequence_(sequence) {}
+  OperatorPhysics(coupling::OperatorSequence& sequence, planner::Tripwires tripwires)
+      : sequence_(sequence), tripwires_(std::move(tripwires)) {}
 
+  /// Throws Error (numerical) when an effect that was left out is called for and not to be
+  /// switched on.
   const double* buoyancy(parcels::Store& store, double time) override;
   bool apply_before(parcels::Store& store, double time, double dt, std::uint64_t step) override;
   void apply_after(parcels::Store& store, double time, double dt, std::uint64_t step) override;
-  void population_changed() override { sequence_.population_changed(); }
+  void population_changed() override;
   /// The number of the step to come, for a run that does not start at step 0.
   void resume_at(std::uint64_t step) { step_ = step; }
   double largest_step() override { return sequence_.dt_limit(); }
 
+  /// Effects switched on since the start of the run, those of earlier legs included.
+  const std::vector<Activation>& activations() const { return activations_; }
+  /// Takes over activations from a checkpoint: their effects are on.
+  void restore(std::vector<Activation> activations);
+  const planner::Tripwires& tripwires() const { return tripwires_; }
+
  private:
+  void watch(const parcels::Store& store, double time);
+
   coupling::OperatorSequence& sequence_;
+  planner::Tripwires tripwires_;
+  std::vector<Activation> activations_;
   std::uint64_t step_ = 0;
   double dt_ = 0;
   int buoyancy_scalar_ = -1;

@@ -5,13 +5,15 @@
 
 #include <ctime>
 
+#include "planner/plan_text.hpp"
+
 namespace pileus::model {
 
 std::map<std::string, std::uint64_t> run_seeds(const scene::Scene& scene) {
   return {{"scene", scene.seed}, {"parcels", scene.parcels.seed}};
 }
 
-output::Provenance run_provenance(const scene::Scene& scene) {
+output::Provenance run_provenance(const scene::Scene& scene, const planner::Plan& plan) {
   const BuildRecord& build = build_record();
   output::Provenance provenance;
   provenance.title = scene.title.empty() ? scene.name : scene.title;
@@ -20,6 +22,7 @@ output::Provenance run_provenance(const scene::Scene& scene) {
                                    fmt::gmtime(std::time(nullptr)), scene.path);
   provenance.scene = scene.resolved_yaml;
   provenance.seeds = run_seeds(scene);
+  provenance.attributes["plan"] = planner::plan_json(plan);
   return provenance;
 }
 

@@ -3,12 +3,13 @@
 #include "base/version.hpp"
 #include "output/provenance.hpp"
 #include "output/summary.hpp"
+#include "planner/plan.hpp"
 #include "scene/scene.hpp"
 
 namespace pileus::model {
 
-/// What every file of a run of this scene says about its origin.
-output::Provenance run_provenance(const scene::Scene& scene);
+/// What every file of a run of this scene says about its origin, the plan included.
+output::Provenance run_provenance(const scene::Scene& scene, const planner::Plan& plan);
 
 /// The scene's seeds by name.
 std::map<std::string, std::uint64_t> run_seeds(const scene::Scene& scene);

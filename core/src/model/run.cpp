@@ -12,6 +12,7 @@
 #include "coupling/operator_entry.hpp"
 #include "host/search.hpp"
 #include "model/loop.hpp"
+#include "model/plan_run.hpp"
 #include "output/checkpoint.hpp"
 #include "scene/read_scene.hpp"
 
@@ -70,10 +71,11 @@ RunResult run(const RunRequest& request, Progress& progress) {
       scene, host::default_search_path(std::filesystem::path(request.scene_path).parent_path()),
       problems);
   problems.throw_if_any();
+  PlannedRun planned = plan_run(scene, std::move(operators));
 
   const output::RunDirectory directory(results_folder(request, scene), directory_mode(request));
   install_stop_signals();
-  Loop loop(scene, std::move(operators), directory, progress);
+  Loop loop(scene, std::move(planned), directory, progress);
   begin(loop, request, directory, progress);
 
   RunResult result;

@@ -1,4 +1,5 @@
 // The summary of a run: everything summary.json holds.
+#include <fmt/format.h>
 #include <omp.h>
 #include <sys/resource.h>
 
@@ -7,6 +8,7 @@
 #include "model/loop.hpp"
 #include "model/provenance.hpp"
 #include "output/state_hash.hpp"
+#include "planner/plan_text.hpp"
 
 namespace pileus::model {
 namespace {
@@ -30,20 +32,34 @@ std::vector<output::PhaseSummary> phases_of(const PhaseTimes& times) {
   return phases;
 }
 
-std::vector<output::EffectSummary> effects_of(const coupling::OperatorSequence& sequence,
-                                              const coupling::Ledger& ledger) {
-  std::vector<output::EffectSummary> effects;
-  const auto& operators = sequence.operators();
-  for (std::size_t i = 0; i < operators.size(); ++i)
-    for (const auto& effect : operators[i].table->effects)
-      if (effect.role == PILEUS_PROVIDES)
-        effects.push_back({effect.name, "on",
-                           "provided by the operator '" + operators[i].name + "' of the scene",
-                           i < ledger.operators.size() ? ledger.operators[i].core_seconds : 0.0});
-  return effects;
+}  // namespace
+
+/// Share of the run's wall time on all its threads: calls are timed by the same clock, so that what
+/// else the machine does falls on both.
+double Loop::share_of_run(double seconds) const {
+  const double all = totals_.wall * omp_get_max_threads();
+  return all > 0 ? seconds / all : 0.0;
 }
 
-}  // namespace
+/// Verdicts of the plan, and what happened to them. The time of an operator counts for every effect
+/// it provides.
+std::vector<output::EffectSummary> Loop::effect_summaries(const coupling::Ledger& ledger) const {
+  std::vector<output::EffectSummary> effects;
+  for (const planner::EffectPlan& effect : plan_.effects) {
+    output::EffectSummary entry{effect.effect, word_of(effect.verdict),
+                                planner::reason_line(plan_, effect), 0.0, 0.0};
+    for (const Activation& one : physics_.activations())
+      if (one.effect == effect.effect)
+        entry.reason += fmt::format("; switched on at t = {:.6g} s, step {}", one.time, one.step);
+    for (const std::size_t i : effect.providers)
+      for (const coupling::OperatorLedger& op : ledger.operators)
+        if (op.name == plan_.operators[i].name && effect.verdict != planner::Verdict::off)
+          entry.seconds += op.core_seconds;
+    entry.share = share_of_run(entry.seconds);
+    effects.push_back(std::move(entry));
+  }
+  return effects;
+}
 
 output::Summary Loop::summary() const {
   output::Summary s;
@@ -70,10 +86,19 @@ output::Summary Loop::summary() const {
   s.expect = judge(scene_.expect, *record_);
 
   const coupling::Ledger ledger = sequence_.ledger();
-  for (const auto& op : ledger.operators)
-    s.operators.push_back(
-        {op.name, op.parcels, op.skipped, op.core_seconds, op.retries, op.repairs});
-  s.effects = effects_of(sequence_, ledger);
+  for (const auto& op : ledger.operators) {
+    output::OperatorSummary one{op.name,         op.parcels, op.skipped(),
+                                op.core_seconds, op.retries, op.repairs};
+    one.share = share_of_run(op.core_seconds);
+    one.skipped_by_epoch = op.skipped_by_epoch;
+    one.skipped_by_bounds = op.skipped_by_bounds;
+    one.skipped_by_list = op.skipped_by_list;
+    one.audited = op.audited;
+    one.seconds_saved = op.seconds_saved();
+    s.operators.push_back(std::move(one));
+  }
+  s.watch = {physics_.tripwires().checks(), physics_.tripwires().seconds()};
+  s.effects = effect_summaries(ledger);
   for (const auto& total : ledger.totals) {
     output::BudgetSummary budget;
     budget.name = total.budget;
@@ -93,6 +118,7 @@ output::Summary Loop::summary() const {
                                         simulation_->step(), beside_parcels);
   s.directory = directory_.path().string();
   if (streams_) s.outputs = streams_->summarise();
+  s.outputs.push_back({"plan.json", "which effects were simulated, and why", 0});
   return s;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/terminal.hpp"
+#include "base/wrap_text.hpp"
 #include "output/summary.hpp"
 
 namespace pileus::output {
@@ -60,21 +61,36 @@ std::string phase_table(const Summary& s) {
 }
 
 std::string operator_table(const Summary& s) {
-  if (s.operators.empty()) return {};
-  std::string text = fmt::format("\n  {:<28}{:>12}{:>16}{:>16}{:>9}{:>9}\n", "operator", "seconds",
-                                 "parcel calls", "skipped", "retries", "repairs");
-  for (const OperatorSummary& one : s.operators)
-    text += fmt::format("  {:<28}{:>12.3f}{:>16}{:>16}{:>9}{:>9}\n", one.name, one.seconds,
-                        format_count(one.calls), format_count(one.skipped),
-                        format_count(one.retries), format_count(one.repairs));
+  if (s.operators.empty() && s.watch.checks == 0) return {};
+  std::string text =
+      fmt::format("\n  {:<20}{:>9}{:>9}{:>15}{:>15}{:>9}{:>9}{:>9}\n", "operator", "seconds",
+                  "share", "parcel calls", "skipped", "saved s", "retries", "repairs");
+  for (const OperatorSummary& one : s.operators) {
+    text += fmt::format("  {:<20}{:>9.3f}{:>7.1f} %{:>15}{:>15}{:>9.3f}{:>9}{:>9}\n", one.name,
+                        one.seconds, 100 * one.share, format_count(one.calls),
+                        format_count(one.skipped), one.seconds_saved, format_count(one.retries),
+                        format_count(one.repairs));
+    if (one.skipped > 0)
+      text += fmt::format(
+          "  {:<20}skipped because nothing had changed {}, by block {}, by parcel {}"
+          "{}\n",
+          "", format_count(one.skipped_by_epoch), format_count(one.skipped_by_bounds),
+          format_count(one.skipped_by_list),
+          one.audited > 0 ? "; audited " + format_count(one.audited) : "");
+  }
+  if (s.watch.checks > 0)
+    text += fmt::format("  {:<20}{:>9.3f}  {} looks at what was left out\n", "watch",
+                        s.watch.seconds, format_count(s.watch.checks));
   return text;
 }
 
 std::string effect_table(const Summary& s) {
   if (s.effects.empty()) return {};
-  std::string text = fmt::format("\n  {:<28}{:>7}  {}\n", "effect", "verdict", "because");
+  std::string text = fmt::format("\n  {:<16}{:>8}{:>9}{:>9}  {}\n", "effect", "verdict", "seconds",
+                                 "share", "because");
   for (const EffectSummary& effect : s.effects)
-    text += fmt::format("  {:<28}{:>7}  {}\n", effect.name, effect.verdict, effect.reason);
+    text += fmt::format("  {:<16}{:>8}{:>9.3f}{:>7.1f} %  {}\n", effect.name, effect.verdict,
+                        effect.seconds, 100 * effect.share, wrap_text(effect.reason, 46));
   return text;
 }
 

@@ -25,7 +25,7 @@ constexpr const char* lock_name = "run.lock";
 /// Files of a run: by whole name, or by suffix. Checked against what the writers of this folder
 /// use.
 bool is_run_file(const std::string& name) {
-  constexpr std::array<std::string_view, 2> names = {"summary.json", "status.json"};
+  constexpr std::array<std::string_view, 3> names = {"summary.json", "status.json", "plan.json"};
   constexpr std::array<std::string_view, 4> stems = {"fields", "parcels", "profiles", "series"};
   constexpr std::array<std::string_view, 4> endings = {".nc", ".nc.journal", ".nc.tmp", ".xmf"};
   for (const std::string_view known : names)

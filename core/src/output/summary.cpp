@@ -73,7 +73,8 @@ Json effects_of(const Summary& summary) {
   return by_name(summary.effects, [](const EffectSummary& effect) {
     return Json{{"verdict", effect.verdict},
                 {"reason", effect.reason},
-                {"seconds", finite("effect time", effect.seconds)}};
+                {"seconds", finite("effect time", effect.seconds)},
+                {"share", number_or_null(effect.share)}};
   });
 }
 
@@ -81,7 +82,14 @@ Json operators_of(const Summary& summary) {
   return by_name(summary.operators, [](const OperatorSummary& one) {
     return Json{{"calls", one.calls},
                 {"skipped", one.skipped},
+                {"skipped_by",
+                 {{"epoch", one.skipped_by_epoch},
+                  {"bounds", one.skipped_by_bounds},
+                  {"list", one.skipped_by_list}}},
+                {"audited", one.audited},
                 {"seconds", finite("operator time", one.seconds)},
+                {"share", number_or_null(one.share)},
+                {"seconds_saved", number_or_null(one.seconds_saved)},
                 {"retries", one.retries},
                 {"repairs", one.repairs}};
   });
@@ -148,6 +156,7 @@ std::string to_json(const Summary& s) {
   json["diagnostics"] = diagnostics_of(s);
   json["effects"] = effects_of(s);
   json["operators"] = operators_of(s);
+  json["watch"] = {{"checks", s.watch.checks}, {"seconds", finite("watch", s.watch.seconds)}};
   json["budgets"] = budgets_of(s);
   json["expect"] = expect_of(s);
   json["state_sha256"] = s.state_sha256;

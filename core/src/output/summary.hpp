@@ -31,15 +31,26 @@ struct EffectSummary {
   std::string name;
   std::string verdict;  // on, off or watch
   std::string reason;   // one sentence
-  double seconds = 0;   // wall time
+  double seconds = 0;   // of the operators that provide it, summed over threads
+  double share = 0;     // of the run's wall time on all its threads
+};
+
+/// The watch over effects that were left out.
+struct WatchSummary {
+  std::uint64_t checks = 0;
+  double seconds = 0;  // wall time
 };
 
 struct OperatorSummary {
   std::string name;
   std::uint64_t calls = 0;    // of apply or diagnose, in parcels
   std::uint64_t skipped = 0;  // parcels left out because they were inactive
-  double seconds = 0;         // wall time
+  double seconds = 0;         // summed over threads
   std::uint64_t retries = 0, repairs = 0;
+  double share = 0;  // of the run's wall time on all its threads
+  // The skipped parcels by what ruled them out, and those called after all to compare.
+  std::uint64_t skipped_by_epoch = 0, skipped_by_bounds = 0, skipped_by_list = 0, audited = 0;
+  double seconds_saved = 0;  // what the skipped ones would have cost at the price of the others
 };
 
 /// A closed sum: final = initial + sources + defect.
@@ -82,6 +93,7 @@ struct Summary {
   std::vector<DiagnosticSummary> diagnostics;
   std::vector<EffectSummary> effects;
   std::vector<OperatorSummary> operators;
+  WatchSummary watch;
   std::vector<BudgetSummary> budgets;
   std::vector<ExpectSummary> expect;
   std::string state_sha256;

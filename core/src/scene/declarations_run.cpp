@@ -64,6 +64,38 @@ int effect_mode(Reader& reader, const Node& node) {
   return -1;
 }
 
+/// One effect of a mapping: a word, or `mode` and `on_trip`.
+void read_effect(Reader& reader, const Entry& entry, EffectRequests& effects) {
+  const Node& node = entry.value;
+  const Node* mode_node = &node;
+  bool stop = false;
+  if (node.kind == Node::Kind::mapping) {
+    mode_node = nullptr;
+    for (const Entry& key : node.entries) {
+      Key words;
+      words.name = key.key;
+      words.choices = {"activate", "stop"};
+      if (key.key == "mode")
+        mode_node = &key.value;
+      else if (key.key == "on_trip")
+        stop = reader.choice(key.value, words) == 1;
+      else
+        reader.problem(key.value,
+                       fmt::format("an effect has 'mode' and 'on_trip', found '{}'", key.key));
+    }
+  }
+  if (mode_node == nullptr) {
+    reader.problem(node, "the effect has no 'mode': on, off or watch");
+    return;
+  }
+  const int mode = effect_mode(reader, *mode_node);
+  if (mode < 0) return;
+  if (node.find("on_trip") != nullptr && mode != 2)
+    reader.problem(node, "'on_trip' has a meaning only with 'mode: watch'");
+  effects.requests.push_back(
+      {entry.key, static_cast<EffectRequests::Mode>(mode), entry.where, stop});
+}
+
 void read_effects(Reader& reader, const Entry& entry, void* object) {
   auto& effects = static_cast<Scene*>(object)->effects;
   const Node& node = entry.value;
@@ -73,14 +105,11 @@ void read_effects(Reader& reader, const Entry& entry, void* object) {
     for (const Node& item : node.items) {
       std::string name;
       if (reader.text(item, "effects", name))
-        effects.requests.push_back({name, EffectRequests::Mode::on, item.where});
+        effects.requests.push_back({name, EffectRequests::Mode::on, item.where, false});
     }
   } else if (node.kind == Node::Kind::mapping) {
     effects.form = EffectRequests::Form::map;
-    for (const Entry& effect : node.entries)
-      if (const int mode = effect_mode(reader, effect.value); mode >= 0)
-        effects.requests.push_back(
-            {effect.key, static_cast<EffectRequests::Mode>(mode), effect.where});
+    for (const Entry& effect : node.entries) read_effect(reader, effect, effects);
   } else {
     reader.problem(node, fmt::format("'effects' is 'auto', a list of effects, or a mapping of each "
                                      "to on, off or watch; found {}",
@@ -95,6 +124,8 @@ Json write_effects(const void* object) {
   for (const EffectRequests::Request& request : effects.requests) {
     if (effects.form == EffectRequests::Form::list)
       all.push_back(request.name);
+    else if (request.stop_on_trip)
+      all[request.name] = {{"mode", "watch"}, {"on_trip", "stop"}};
     else
       all[request.name] = effect_modes[static_cast<std::size_t>(request.mode)];
   }
@@ -233,12 +264,31 @@ const Table& coupling_table() {
                       "One pass (first order), or symmetric half steps (second order)."),
                value("order", &Coupling::order, "1",
                      "Names of the operators, the outermost (stiffest) first.")
-                   .otherwise("as listed in 'operators'")},
+                   .otherwise("as listed in 'operators'"),
+               value("skip_inactive", &Coupling::skip_inactive, "1",
+                     "Leave parcels out that an operator declares it would not change; results "
+                     "are the same bits either way."),
+               value("audit", &Coupling::audit, "1",
+                     "Share of the blocks left out that is called after all on a copy; a parcel "
+                     "that would have changed ends the run.")
+                   .at_least(0)
+                   .at_most(1)},
       .other = {},
       .finish = {},
       .write_other = {},
       .amend_schema = {}};
   return table;
+}
+
+/// The forms of one effect in a mapping.
+Json effect_forms() {
+  const Json word{{"enum", Json::array({true, false, "on", "off", "watch"})}};
+  const Json detailed{
+      {"type", "object"},
+      {"additionalProperties", false},
+      {"required", Json::array({"mode"})},
+      {"properties", {{"mode", word}, {"on_trip", {{"enum", Json::array({"activate", "stop"})}}}}}};
+  return Json::array({word, detailed});
 }
 
 Key effects_key() {
@@ -248,18 +298,18 @@ Key effects_key() {
   key.doc =
       "Which effects are simulated: 'auto' leaves all to the planner, a list switches exactly "
       "these "
-      "on, a mapping states on, off or watch for those named.";
+      "on, a mapping states on, off or watch for those named. A watched effect is left out until "
+      "something calls for it; {mode: watch, on_trip: stop} ends the run then instead of switching "
+      "the effect on.";
   key.default_doc = "auto";
   key.read = read_effects;
   key.write = write_effects;
   key.schema = [] {
     return Json{
         {"anyOf",
-         Json::array({Json{{"const", "auto"}},
-                      Json{{"type", "array"}, {"items", {{"type", "string"}}}},
-                      Json{{"type", "object"},
-                           {"additionalProperties",
-                            {{"enum", Json::array({true, false, "on", "off", "watch"})}}}}})}};
+         Json::array(
+             {Json{{"const", "auto"}}, Json{{"type", "array"}, {"items", {{"type", "string"}}}},
+              Json{{"type", "object"}, {"additionalProperties", {{"anyOf", effect_forms()}}}}})}};
   };
   return key;
 }

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "base/nearest_word.hpp"
+#include "pileus/thermo.hpp"
 
 namespace pileus::scene {
 namespace {
@@ -32,6 +33,10 @@ double round_down(double value) {
 double round_up(double value) {
   return std::ceil(value);
 }
+/// Over liquid water, Pa; zero from the formula's pole at 29.65 K down.
+double saturation_pressure(double kelvin) {
+  return kelvin > 29.65 ? thermo::saturation_pressure(kelvin).value : 0.0;
+}
 
 void define_vocabulary(mu::Parser& parser) {
   // The classic locale whatever the environment says: "0.5" must stay a half.
@@ -42,6 +47,7 @@ void define_vocabulary(mu::Parser& parser) {
   parser.DefineFun("mod", modulo);
   parser.DefineFun("floor", round_down);
   parser.DefineFun("ceil", round_up);
+  parser.DefineFun("saturation_pressure", saturation_pressure);
   parser.DefineConst("pi", std::numbers::pi);
 }
 

@@ -20,7 +20,8 @@ struct FormulaProblem {
 ///
 /// Beside muParser's functions (sqrt, exp, ln, log10, sin … atanh, abs, sign, min, max, rint) and
 /// operators (+ − * / ^, comparisons, && ||, a ? b : c) there are if(c, a, b), clip(a, low, high),
-/// step(a) (1 for a ≥ 0, else 0), mod(a, b), floor(a), ceil(a) and the constant pi.
+/// step(a) (1 for a ≥ 0, else 0), mod(a, b), floor(a), ceil(a), saturation_pressure(T) over liquid
+/// water (Pa of K; Bolton 1980) and the constant pi.
 class Formula {
  public:
   /// Throws FormulaProblem.

@@ -142,6 +142,8 @@ struct Coupling {
   enum class Scheme { lie, strang };
   Scheme scheme = Scheme::lie;
   std::vector<std::string> order;  // operator names, outermost first; empty: as listed
+  bool skip_inactive = true;       // false: operators are called for every parcel
+  double audit = 0;                // share of skipped blocks that is called after all, to compare
 };
 
 /// Initial state quantities in which the domain's potential energy is measured.
@@ -163,6 +165,7 @@ struct EffectRequests {
     std::string name;
     Mode mode = Mode::on;
     Location where;
+    bool stop_on_trip = false;  // watched: end the run instead of switching the effect on
   };
   Form form = Form::automatic;
   std::vector<Request> requests;

@@ -43,7 +43,7 @@ TEST(Retry, ends_with_an_error_that_names_the_parcel_count_of_calls) {
 std::vector<double> random_growth(int threads, bool skip) {
   omp_set_num_threads(threads);
   SequenceOptions options;
-  options.skip_inactive = skip;
+  options.coupling.skip_inactive = skip;
   options.seed = 7;
   ToyRun run(entries_of<RandomGrowth>({"growth"}), 5000, options);
   for (std::size_t p = 0; p < 5000; p += 1 + p % 7) run.values("passive_tracer")[p] = 1.5;
@@ -64,13 +64,68 @@ TEST(Determinism, same_bits_for_any_number_of_threads_and_with_skipping_off) {
   omp_set_num_threads(2);
 }
 
+coupling::SequenceOptions audited(double share) {
+  SequenceOptions options;
+  options.coupling.audit = share;
+  return options;
+}
+
+TEST(Audit, finds_a_false_declaration_and_names_parcel_quantity_and_plugin) {
+  for (const bool partly : {false, true}) {  // a whole block is skipped, or part of one
+    ToyRun run(entries_of<FalselyIdle>({"liar"}), 3000, audited(1));
+    run.values("passive_tracer")[1500] = 1.75;
+    if (partly) run.values("passive_tracer")[1600] = 3.0;
+    run.sequence.population_changed();
+    try {
+      run.step(0, 1.0);
+      FAIL() << "the audit saw nothing";
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(error.code(), ExitCode::plugin);
+      for (const char* phrase :
+           {"'liar'", "test.falsely_idle", "parcel 1501", "passive_tracer", "from 1.75 to 2.75"})
+        EXPECT_NE(text.find(phrase), std::string::npos) << text;
+    }
+    EXPECT_EQ(run.values("passive_tracer")[1500], 1.75) << "the audit works on a copy";
+  }
+}
+
+TEST(Audit, also_looks_at_operators_that_have_been_idle) {
+  ToyRun run(entries_of<FalselyIdle>({"liar"}), 100, audited(0.0));
+  run.step(0, 1.0);  // nobody above 1.5 yet
+  EXPECT_EQ(run.sequence.ledger().operators.front().skipped_by_bounds, 100u);
+  run.step(1, 1.0);
+  EXPECT_EQ(run.sequence.ledger().operators.front().skipped_by_epoch, 100u);
+  ToyRun second(entries_of<FalselyIdle>({"liar"}), 100, audited(1.0));
+  second.step(0, 1.0);
+  second.values("passive_tracer")[3] = 1.75;  // behind the sequence's back: no new version
+  EXPECT_THROW(second.step(1, 1.0), Error);
+}
+
+TEST(Audit, changes_no_bit_and_draws_its_share) {
+  SequenceOptions plain, probing = audited(0.25);
+  ToyRun reference(entries_of<RandomGrowth>({"growth"}), 40 * 1024, plain);
+  ToyRun run(entries_of<RandomGrowth>({"growth"}), 40 * 1024, probing);
+  for (ToyRun* one : {&reference, &run}) {
+    for (std::size_t p = 0; p < 40 * 1024; p += 3000) one->values("passive_tracer")[p] = 1.5;
+    one->sequence.population_changed();
+    for (std::uint64_t n = 0; n < 10; ++n) one->step(n, 0.5);
+  }
+  for (std::size_t p = 0; p < 40 * 1024; ++p)
+    ASSERT_EQ(run.values("passive_tracer")[p], reference.values("passive_tracer")[p]);
+  const auto ledger = run.sequence.ledger().operators.front();
+  // 400 draws of probability 1/4: 100 expected, standard deviation 8.7; six of them.
+  EXPECT_NEAR(static_cast<double>(ledger.audited) / 1024, 100, 52);
+  EXPECT_GT(ledger.skipped_by_bounds, 20u * 1024);
+}
+
 TEST(Activity, calls_only_active_parcels_and_skips_idle_operators_by_one_comparison) {
   ToyRun run(entries_of<RandomGrowth>({"growth"}), 3000);
   RandomGrowth::parcels_seen = 0;
   run.step(0, 1.0);  // all at 1.0: nobody is above 1
   run.step(1, 1.0);
   EXPECT_EQ(RandomGrowth::parcels_seen, 0);
-  EXPECT_EQ(run.sequence.ledger().operators.front().skipped, 6000u);
+  EXPECT_EQ(run.sequence.ledger().operators.front().skipped(), 6000u);
   EXPECT_EQ(run.sequence.ledger().operators.front().calls, 0u);
   run.values("passive_tracer")[10] = 2.0;
   run.values("passive_tracer")[1500] = 2.0;

@@ -1,5 +1,6 @@
 // Small operators, linked into the test, that behave in one known way each.
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -82,6 +83,62 @@ class RandomGrowth : public Operator<RandomGrowth> {
  private:
   Slot tracer, volume;
   Budget matter;
+};
+
+/// Claims to be inactive up to 2 but changes whatever is above 1.5.
+class FalselyIdle : public Operator<FalselyIdle> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.falsely_idle");
+    tracer = d.owns("passive_tracer", "1").intensive().range(0, 1e6).initial(1);
+    d.active_if(0, "passive_tracer", PILEUS_GT, 2.0);
+  }
+  void apply(const pileus_step&, Block block) const {
+    double* q = block.out(tracer);
+    block.each([&](auto p) {
+      if (q[p] > 1.5) q[p] += 1;
+    });
+  }
+
+ private:
+  Slot tracer;
+};
+
+/// Derives a buoyancy of 1 and, where condensation is on, a liquid water of 0.25.
+class Condenser : public Operator<Condenser> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.condenser");
+    d.op.form = PILEUS_CLOSURE;
+    d.provides("condensation");
+    d.provides("buoyancy");
+    buoyancy = d.derives("buoyancy", "m s-2");
+    liquid = d.derives("mass_fraction_of_cloud_liquid_water_in_air", "1")
+                 .range(0.25, 0.25)
+                 .when("effect.condensation == on");
+  }
+  void diagnose(const pileus_step&, Block block) const {
+    std::fill_n(block.out(buoyancy), block.count(), 1.0);
+    if (block.has(liquid)) std::fill_n(block.out(liquid), block.count(), 0.25);
+  }
+
+ private:
+  Slot buoyancy, liquid;
+};
+
+/// Counts its calls and provides one effect.
+class Counter : public Operator<Counter> {
+ public:
+  static inline std::atomic<int> calls = 0;
+  void describe(Declaration& d) {
+    introduce(d, "test.counter");
+    d.provides("counting");
+    tracer = d.owns("passive_tracer", "1").intensive().initial(3);
+  }
+  void apply(const pileus_step&, Block) const { ++calls; }
+
+ private:
+  Slot tracer;
 };
 
 /// dx/dt = y, exactly, for x = specific humidity and y = passive tracer.

@@ -1,0 +1,22 @@
+// What the scene itself says about effects: by name, or by asking for what only they bring about.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "planner/plan.hpp"
+#include "scene/scene.hpp"
+
+namespace pileus::planner {
+
+/// Errors  Error(ExitCode::usage) for a request of an effect that is not among `known`
+void check_requests(const scene::EffectRequests& requests, const std::vector<std::string>& known);
+
+/// Switches an effect on whose diagnostics or quantities the scene wants to see.
+void call_for_requested_output(const scene::Scene& scene,
+                               const std::vector<ListedOperator>& operators, EffectPlan& effect);
+
+/// Replaces the verdict by the one the scene demands.
+/// Errors  Error(ExitCode::usage) if an effect is demanded that no operator provides
+void obey_request(const scene::EffectRequests& requests, EffectPlan& effect);
+
+}  // namespace pileus::planner

@@ -1,0 +1,119 @@
+#include "planner/rule_number.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "scene/problems.hpp"
+
+namespace pileus::planner {
+namespace {
+
+/// The hydrostatic state an operator's parameters describe, if it has all of them.
+std::shared_ptr<const thermo::ReferenceState> reference_of(const host::OperatorTable& table,
+                                                           const host::ParameterValues& values) {
+  const auto number = [&](const char* name) -> std::optional<double> {
+    const int index = table.find_parameter(name);
+    if (index < 0) return std::nullopt;
+    return values.numbers()[index];
+  };
+  const int heights = table.find_parameter("reference_height");
+  const int theta = table.find_parameter("reference_potential_temperature");
+  const auto gravity = number("gravity"), gas = number("gas_constant_dry_air"),
+             heat = number("heat_capacity"), pressure = number("surface_pressure"),
+             base = number("base_height");
+  if (heights < 0 || theta < 0 || !gravity || !gas || !heat || !pressure || !base) return nullptr;
+  const std::vector<double>& z = values.list(heights);
+  if (z.empty() || z.size() != values.list(theta).size() ||
+      std::adjacent_find(z.begin(), z.end(), std::greater_equal<>()) != z.end())
+    return nullptr;  // the plugin refuses such a profile
+  thermo::Constants constants;
+  constants.gravity = *gravity;
+  constants.gas_constant_dry_air = *gas;
+  constants.heat_capacity = *heat;
+  return std::make_shared<const thermo::ReferenceState>(z, values.list(theta), *base, *pressure,
+                                                        constants);
+}
+
+}  // namespace
+
+RuleInputs inputs_of(const host::OperatorTable* table, const host::ParameterValues* values,
+                     std::vector<std::string> quantities, double duration) {
+  RuleInputs inputs;
+  inputs.quantities = std::move(quantities);
+  inputs.parameters.emplace_back("duration", duration);
+  if (table == nullptr) return inputs;
+  for (std::size_t i = 0; i < table->parameters.size(); ++i) {
+    const pileus_parameter& p = table->parameters[i];
+    const bool taken = p.type != PILEUS_NUMBER && p.type != PILEUS_INTEGER;
+    if (!taken && scene::is_free_name(p.name) && std::string_view(p.name) != "duration")
+      inputs.parameters.emplace_back(p.name, values->numbers()[i]);
+  }
+  inputs.reference = reference_of(*table, *values);
+  return inputs;
+}
+
+RuleNumber::RuleNumber(const RuleCase& rule_case, RuleInputs inputs)
+    : inputs_(std::move(inputs)), threshold_(rule_case.threshold) {
+  for (const std::string& quantity : inputs_.quantities) {
+    names_.push_back("lowest_" + quantity);
+    names_.push_back("highest_" + quantity);
+  }
+  values_.assign(names_.size(), 0.0);
+  for (const auto& [name, value] : inputs_.parameters) {
+    names_.push_back(name);
+    values_.push_back(value);
+  }
+  input_count_ = reference_ = names_.size();
+  if (inputs_.reference) names_.emplace_back("reference_exner");
+  const auto compile = [&](const RuleFormula& formula) {
+    try {
+      formulas_.emplace_back(formula.text, names_, std::map<std::string, double>{});
+    } catch (const scene::FormulaProblem& problem) {
+      throw Error(ExitCode::usage,
+                  fmt::format("{}: error: {}", scene::describe(formula.where), problem.text));
+    }
+    names_.push_back(formula.name);
+  };
+  for (const RuleFormula& formula : rule_case.let) compile(formula);
+  compile(rule_case.number);
+  values_.resize(names_.size(), 0.0);
+  find_used();
+}
+
+/// From the end backwards, since a formula uses only names before its own.
+void RuleNumber::find_used() {
+  used_.assign(names_.size(), false);
+  used_.back() = true;
+  for (std::size_t f = formulas_.size(); f-- > 0;) {
+    const std::size_t own = names_.size() - formulas_.size() + f;
+    for (std::size_t n = 0; used_[own] && n < own; ++n)
+      if (formulas_[f].uses(n)) used_[n] = true;
+  }
+  if (inputs_.reference && used_[reference_]) {
+    const auto height = std::find(names_.begin(), names_.end(), "highest_height");
+    used_[static_cast<std::size_t>(height - names_.begin())] = true;
+  }
+}
+
+double RuleNumber::operator()(const double* extrema) {
+  std::copy_n(extrema, 2 * inputs_.quantities.size(), values_.begin());
+  if (inputs_.reference) {
+    for (std::size_t q = 0; q < inputs_.quantities.size(); ++q)
+      if (inputs_.quantities[q] == "height")
+        values_[reference_] = inputs_.reference->at(values_[2 * q + 1]).exner;
+  }
+  for (std::size_t f = 0; f < formulas_.size(); ++f)
+    values_[names_.size() - formulas_.size() + f] = formulas_[f](values_.data());
+  return values_.back();
+}
+
+std::optional<double> RuleNumber::value(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) return std::nullopt;
+  return values_[static_cast<std::size_t>(found - names_.begin())];
+}
+
+}  // namespace pileus::planner
