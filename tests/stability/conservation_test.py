@@ -1,5 +1,5 @@
 """What no run may change, whatever the scene."""
-from program import THERMAL, WAVE, WARM_BUBBLE_2D, ProgramTest
+from program import MIXING_THERMAL, THERMAL, WAVE, WARM_BUBBLE_2D, ProgramTest
 
 # Means over n parcels round by at most n times the unit round-off, here 14 000 times 1.1e-16; the
 # means of pairwise merges and halvings add less.
@@ -30,6 +30,17 @@ class Conservation(ProgramTest):
             self.assert_mean_kept(ended, name)
         for quantity in CARRIED:
             self.assert_never_widened(ended, quantity)
+
+    def test_mixing(self):
+        """Nudging, exchange, displaced and stretched parcels: amounts and extrema as without."""
+        ended = self.run_well(MIXING_THERMAL, values=COARSE_THERMAL)
+        self.assertNotEqual(ended.summary["parcels"]["initial"], ended.summary["parcels"]["final"])
+        for name in ("volume", "total_water", *(f"mean_{quantity}" for quantity in CARRIED)):
+            self.assert_mean_kept(ended, name)
+        for quantity in CARRIED:
+            low, high = ended.diagnostic(f"min_{quantity}"), ended.diagnostic(f"max_{quantity}")
+            self.assertGreaterEqual(low["min"], low["initial"], quantity)
+            self.assertLessEqual(high["max"], high["initial"], quantity)
 
     def test_wave(self):
         ended = self.run_well(WAVE, values={"domain.cells": "[16, 16, 4]"})

@@ -1,5 +1,5 @@
 """The same bits for any number of threads, and for every instruction set in itself."""
-from program import RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
+from program import MIXING_THERMAL, NUDGED_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
 from records import differences, parcel_records
 
 # Coarse, and long enough for what can depend on threads to happen: the thermal splits and merges.
@@ -8,6 +8,7 @@ COARSE_THERMAL = {"domain.cells": "[12, 12, 12]", "time.end": "420 s",
                   "output.fields.every": "100 s", "output.parcels.every": "70 s"}
 SHORT_THERMAL = {"domain.cells": "[8, 8, 8]", "time.max_steps": 15}
 COARSE_RELAXING_THERMAL = {"domain.cells": "[12, 12, 12]", "time.max_steps": 20}
+COARSE_MIXING_THERMAL = {"domain.cells": "[10, 10, 10]", "time.max_steps": 12}
 
 
 class Determinism(ProgramTest):
@@ -43,6 +44,22 @@ class Determinism(ProgramTest):
     def test_operator_in_halves_on_any_threads(self):
         self.assert_same_on_any_threads(
             RELAXING_THERMAL, COARSE_RELAXING_THERMAL | {"coupling.scheme": "strang"})
+
+    def test_mixing_on_any_threads(self):
+        self.assert_same_on_any_threads(MIXING_THERMAL, COARSE_MIXING_THERMAL)
+
+    def test_mixing_in_halves_on_any_threads(self):
+        self.assert_same_on_any_threads(
+            MIXING_THERMAL, COARSE_MIXING_THERMAL | {"coupling.scheme": "strang"})
+
+    def test_mixing_of_strength_zero_changes_no_bit(self):
+        """Nor does an operator that reads the mesh leave a trace in what the core keeps there."""
+        values = {"domain.cells": "[10, 10, 10]", "time.max_steps": 12}
+        without = self.run_on(THERMAL, values, 2)
+        none = self.run_on(NUDGED_THERMAL, values | {"operators.mixing.beta": 0}, 2)
+        some = self.run_on(NUDGED_THERMAL, values, 2)
+        self.assertEqual(none.summary["state_sha256"], without.summary["state_sha256"])
+        self.assertNotEqual(some.summary["state_sha256"], without.summary["state_sha256"])
 
     def test_fields_of_formulas_on_many_threads(self):
         """Parsers of formulas share what they are made from: threads used to corrupt it at times."""

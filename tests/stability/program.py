@@ -17,7 +17,9 @@ CONFIGS = SOURCE / "configs" / "scenes"
 SCENES = SOURCE / "tests" / "scenes"
 WAVE = CONFIGS / "internal_wave" / "internal_wave_small.yaml"
 THERMAL = CONFIGS / "moist_thermal" / "moist_thermal_small.yaml"
+NUDGED_THERMAL = CONFIGS / "moist_thermal" / "moist_thermal_nudged.yaml"
 RELAXING_THERMAL = SCENES / "relaxing_thermal.yaml"
+MIXING_THERMAL = SCENES / "mixing_thermal.yaml"
 WARM_BUBBLE_2D = SCENES / "warm_bubble_2d.yaml"
 
 # Exit codes, as `pileus --help` promises them.

@@ -3,7 +3,7 @@ import random
 import signal
 import time
 
-from program import DONE, ENDS_AT_WRITE, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
+from program import DONE, ENDS_AT_WRITE, MIXING_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
 from records import differences
 
 # A checkpoint every third step and a record of every stream in most steps: a large share of the
@@ -99,6 +99,13 @@ class Restart(ProgramTest):
                 self.assertGreater(killed, 1)
                 self.assert_equal_runs(resumed, whole)
             self.empty("killed", "whole")
+
+    def test_mixing_killed_again_and_again(self):
+        """Operators that read the mesh and draw random numbers."""
+        values = BUSY_RELAXING_THERMAL | {"time.end": "180 s"}
+        whole, took = self.timed(MIXING_THERMAL, values)
+        resumed, _ = self.kill_and_resume(MIXING_THERMAL, values, self.random_moments(13, took))
+        self.assert_equal_runs(resumed, whole)
 
     def test_killed_while_writing(self):
         """In the middle of a change of a file: every one of a stretch that holds a checkpoint, and

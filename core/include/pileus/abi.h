@@ -53,7 +53,9 @@ typedef struct pileus_error { /* owned by the caller, valid for one call */
 enum { /* place: where a quantity lives */
   PILEUS_PARCEL = 1,
   PILEUS_ITEM,              /* per-parcel lists, see pileus.items/1 */
-  PILEUS_MESH,              /* deposited by the core from the parcels' quantity of that name */
+  PILEUS_MESH,              /* deposited by the core from the parcels' quantity of that name, or a
+                             * quantity of the gridded flow; one element per node, see
+                             * pileus.mesh/1; read only, not in diagnose */
   PILEUS_MESH_AT_PARCEL,    /* the same, interpolated back to the parcels */
   PILEUS_SURFACE,
   PILEUS_DOMAIN
@@ -63,7 +65,9 @@ enum { /* access, a bit set */
   PILEUS_READ = 1u,
   PILEUS_WRITE = 2u,        /* returns a new value */
   PILEUS_CREATE = 4u,       /* owns the quantity; one owner per run */
-  PILEUS_ADD = 8u           /* only adds to a shared accumulator */
+  PILEUS_ADD = 8u,          /* only adds to a shared accumulator */
+  PILEUS_OPTIONAL = 16u     /* not called for: exists if something else brings it about; one to be
+                             * written exists only where parcels carry it, not where it is derived */
 };
 enum { /* nature: what happens at a merge or split; 0: as the quantity's owner declares */
   PILEUS_EXTENSIVE = 1, PILEUS_INTENSIVE, PILEUS_LABEL, PILEUS_DERIVED
@@ -265,6 +269,33 @@ typedef struct pileus_items_ext {
   pileus_status (*merge)(void* self, const pileus_step*, const pileus_block*, int64_t into,
                          int64_t from, pileus_error*);
 } pileus_items_ext;
+
+/* Extension of the host "pileus.mesh/1": between parcels and mesh with the core's own weights, for
+ * GLOBAL operators [step]. A field has one record of `width` doubles per node; records of a column
+ * follow each other upwards, from one level below the lower wall to one above the upper one:
+ * record (j * cells[0] + i) * levels + k + 1 for level k = -1 ... cells[2] + 1 of column (i, j).
+ * Arrays over the parcels are 64-byte aligned with room for whole cache lines, as views of all
+ * parcels and `scratch` are. Same bits for any number of threads. */
+#define PILEUS_MESH_EXTENSION "pileus.mesh/1"
+typedef struct pileus_mesh_ext {
+  uint32_t size, width; /* doubles per record */
+  int64_t nodes, levels;
+  void* impl; /* the core's own */
+  /* Gathers per-volume values (at most width - 1) of all `parcels`: record[0] is the volume at the
+   * node, record[1 + f] the volume-weighted mean of values[f]. Half cells at a wall count double
+   * and what reaches beyond it is gathered one level inside. */
+  pileus_status (*deposit)(const struct pileus_mesh_ext*, int64_t parcels,
+                           const double* const* values, uint32_t count, double* field,
+                           pileus_error*);
+  /* values[f][p] = sum over nodes of weight * record[f], with weights that are not negative, sum to
+   * one, and are those of `deposit`. The levels beyond the walls are set to the mirror image of
+   * those inside, whatever they held, so that with f and phi on the nodes and
+   *   new_p = phi_p + sum_nodes weight * f * (phi - phi_p)
+   * the sum of volume * phi_p stays the same for any f: what a node takes from its parcels it gives
+   * back to them. */
+  pileus_status (*interpolate)(const struct pileus_mesh_ext*, int64_t parcels, double* field,
+                               double* const* values, uint32_t count, pileus_error*);
+} pileus_mesh_ext;
 
 /* Extension "pileus.state/1": private memory that the declared quantities cannot express. */
 typedef struct pileus_state_ext {

@@ -44,6 +44,9 @@ class Declaration {
     Quantity& extensive(const char* budget = nullptr) {
       return row_.nature = PILEUS_EXTENSIVE, row_.budget = budget, *this;
     }
+    /// Not called for: exists (Block::has) if another operator or the scene brings it about; one
+    /// that is updated exists only where parcels carry it, not where it is derived.
+    Quantity& optional() { return row_.access |= PILEUS_OPTIONAL, *this; }
     Quantity& initial(double value) { return row_.initial = value, *this; }
     Quantity& components(std::uint32_t count) { return row_.components = count, *this; }
     Quantity& place(std::uint32_t where) { return row_.place = where, *this; }
@@ -90,6 +93,17 @@ class Declaration {
   /// One of the ground that it adds to: a number per column of cells. Only global operators may.
   Quantity accumulates(const char* name, const char* units) {
     return touches(name, units, PILEUS_ADD).place(PILEUS_SURFACE);
+  }
+
+  /// A quantity on the nodes of the mesh: the parcels' quantity of that name as the core gathers
+  /// it, or one of the gridded flow (strain_rate_magnitude, x_derivative_of_z_velocity, …), of the
+  /// state at the start of `apply`.
+  Quantity reads_mesh(const char* name, const char* units) {
+    return touches(name, units, PILEUS_READ).place(PILEUS_MESH);
+  }
+  /// The same interpolated back to the parcels.
+  Quantity reads_mesh_at_parcel(const char* name, const char* units) {
+    return touches(name, units, PILEUS_READ).place(PILEUS_MESH_AT_PARCEL);
   }
 
   Parameter number(const char* name, const char* units, double fallback) {

@@ -21,6 +21,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "abi.h"
@@ -169,6 +170,25 @@ class Operator {
   int choice(Param p) const { return static_cast<int>(number_[p.index]); }
   const std::string& text(Param p) const { return text_[p.index]; }
   std::span<const double> list(Param p) const { return list_[p.index]; }
+
+  /// Calls body(i) for i = 0 … n−1 on all threads; for operators of global scope, in `apply`. The
+  /// result for i must not depend on other calls.
+  template <class Body>
+  void parallel_for(std::int64_t n, Body&& body) const {
+    constexpr std::int64_t grain = 2048;
+    Failure failure("");
+    failure.record.size = sizeof failure.record;
+    failure.status = host_->parallel_for(
+        host_, n, grain,
+        [](void* user, std::int64_t begin, std::int64_t end, pileus_error* error) {
+          return guarded(error, [&] {
+            for (std::int64_t i = begin; i < end; ++i)
+              (*static_cast<std::remove_reference_t<Body>*>(user))(i);
+          });
+        },
+        const_cast<void*>(static_cast<const void*>(&body)), &failure.record);
+    if (failure.status != PILEUS_OK) throw failure;
+  }
 
   /// Draws 0 … n−1 of `channel` (< 64) for one parcel at this step, each in (0,1).
   static void draw(const pileus_step& step, std::uint64_t uid, std::uint32_t channel,

@@ -86,6 +86,7 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, boo
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
     views[s].data = column >= 0 ? store_.column(column) + range.begin : nullptr;
     views[s].count = static_cast<std::int64_t>(range.count);
+    if (slot.mesh.exists()) mesh_->show(slot.mesh, range.begin, range.count, views[s]);
   }
   pileus_block record{};
   record.size = sizeof record;

@@ -29,9 +29,10 @@ struct ParcelRange {
 
 class BlockRunner {
  public:
+  /// `mesh` is null when no operator reads the mesh.
   BlockRunner(const std::vector<BoundOperator>& operators, parcels::Store& store,
-              SurfaceFields& surface, const pileus_grid* grid)
-      : operators_(operators), store_(store), surface_(surface), grid_(grid) {}
+              SurfaceFields& surface, const pileus_grid* grid, const MeshQuantities* mesh)
+      : operators_(operators), store_(store), surface_(surface), grid_(grid), mesh_(mesh) {}
 
   /// Runs the diagnose hook of operator `which`. False: work.failure was set; what it derived is
   /// not to be used.
@@ -72,6 +73,7 @@ class BlockRunner {
   parcels::Store& store_;
   SurfaceFields& surface_;
   const pileus_grid* grid_;
+  const MeshQuantities* mesh_;
 };
 
 }  // namespace pileus::coupling

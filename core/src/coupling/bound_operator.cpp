@@ -20,7 +20,50 @@ void bind_surface_slot(BoundOperator& bound, std::size_t number, const parcels::
   if (slot.writable) bound.accumulated.push_back(number);
 }
 
-void bind_slots(BoundOperator& bound, const parcels::Store& store, const SurfaceFields& surface) {
+[[noreturn]] void refuse_missing(const BoundOperator& bound, const pileus_quantity& row,
+                                 const char* where) {
+  throw Error(ExitCode::usage, fmt::format("operator '{}' needs '{}', which {} not have",
+                                           bound.entry->name, row.name, where));
+}
+
+bool is_derived(const parcels::Store& store, int column) {
+  const int scalar = column - store.first_scalar();
+  return scalar >= 0 &&
+         store.scalars()[static_cast<std::size_t>(scalar)].nature == parcels::Nature::derived;
+}
+
+/// Column of a quantity on the parcels, −1 for an optional one that is not there: an optional
+/// quantity to be written must be carried, for what is derived is not the operator's to change.
+int find_parcel_column(const BoundOperator& bound, const pileus_quantity& row,
+                       const parcels::Store& store) {
+  // The plane has no y.
+  const bool optional =
+      (row.access & PILEUS_OPTIONAL) != 0 || row.name == std::string_view("y_position");
+  const int column = find_column(store, row.name);
+  if (column < 0 && !optional) {
+    refuse_missing(
+        bound, row,
+        store.dimension() == 2 ? "parcels in 2 dimensions do" : "parcels in 3 dimensions do");
+  }
+  const bool writes = (row.access & PILEUS_WRITE) != 0;
+  return column >= 0 && optional && writes && is_derived(store, column) ? -1 : column;
+}
+
+MeshSlot find_mesh_slot(const BoundOperator& bound, const pileus_quantity& row,
+                        const parcels::Store& store, const BoundMesh& mesh) {
+  MeshSlot slot;
+  if (mesh.quantities != nullptr) {
+    slot = mesh.quantities->add(row.name, find_column(store, row.name),
+                                row.place == PILEUS_MESH_AT_PARCEL);
+  }
+  if (!slot.exists() && (row.access & PILEUS_OPTIONAL) == 0) {
+    refuse_missing(bound, row, "the mesh of this run does");
+  }
+  return slot;
+}
+
+void bind_slots(BoundOperator& bound, const parcels::Store& store, const SurfaceFields& surface,
+                const BoundMesh& mesh) {
   const host::OperatorTable& table = *bound.entry->table;
   for (std::size_t i = 0; i < table.quantities.size(); ++i) {
     const pileus_quantity& row = table.quantities[i];
@@ -32,21 +75,16 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
     const bool exists = bound.entry->exists(i);
     if (exists && row.place == PILEUS_SURFACE) {
       bind_surface_slot(bound, i, store, surface, slot);
+    } else if (exists && row.place != PILEUS_PARCEL) {
+      slot.mesh = find_mesh_slot(bound, row, store, mesh);
+      if (slot.mesh.exists()) bound.mesh.push_back(slot.mesh);
     } else if (exists) {
-      slot.column = find_column(store, row.name);
-      const bool absent = slot.column < 0 && row.name == std::string_view("y_position");
-      if (absent) {  // the plane has no y: the slot does not exist
-        bound.slots.push_back(slot);
-        continue;
-      }
-      if (slot.column < 0) {
-        throw Error(ExitCode::usage,
-                    fmt::format("operator '{}' needs '{}', which parcels in {} dimensions do not "
-                                "have",
-                                bound.entry->name, row.name, store.dimension()));
-      }
+      slot.column = find_parcel_column(bound, row, store);
+    }
+    if (slot.column >= 0) {
       if (!slot.derived) bound.read_columns.push_back(slot.column);
       if (slot.writable) (slot.derived ? bound.derived : bound.written).push_back(i);
+      if (slot.writable && slot.column < store.dimension()) bound.moves_parcels = true;
     }
     bound.slots.push_back(slot);
   }
@@ -96,7 +134,8 @@ void follow_effects(BoundOperator& bound) {
 }
 
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
-                            const SurfaceFields& surface, std::uint32_t stream,
+                            const SurfaceFields& surface, const BoundMesh& mesh,
+                            std::uint32_t stream,
                             const std::atomic<bool>* stop) {
   const std::uint32_t scope = entry.table->op.scope;
   if (scope != PILEUS_LOCAL && scope != PILEUS_GLOBAL) {
@@ -108,11 +147,13 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   BoundOperator bound;
   bound.entry = &entry;
   bound.stream = stream;
-  bind_slots(bound, store, surface);
+  bind_slots(bound, store, surface, mesh);
   follow_effects(bound);
   bind_conditions(bound);
   bind_budgets(bound);
-  bound.instance = std::make_unique<host::Instance>(entry.table, stop);
+  const bool lend_mesh = scope == PILEUS_GLOBAL && mesh.extension != nullptr;
+  bound.instance = std::make_unique<host::Instance>(
+      entry.table, host::Lent{stop, lend_mesh ? mesh.extension->table() : nullptr});
   host::ParameterValues values = entry.values;
   bound.instance->configure(values);
   return bound;

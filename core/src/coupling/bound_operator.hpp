@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/mesh_extension.hpp"
+#include "coupling/mesh_quantities.hpp"
 #include "coupling/operator_entry.hpp"
 #include "coupling/surface_fields.hpp"
 #include "host/instance.hpp"
@@ -11,10 +13,12 @@
 
 namespace pileus::coupling {
 
-/// A declared quantity and the column of the store or the surface field it stands for.
+/// A declared quantity and the column of the store, the surface field or the place on the mesh it
+/// stands for.
 struct BoundSlot {
   int column = -1;       // −1: no quantity of the parcels, or it does not exist in this run
   int surface = -1;      // position among the surface fields; −1: none of them
+  MeshSlot mesh;         // of places on the mesh
   bool derived = false;  // written by diagnose; every other writable slot by apply
   bool writable = false;
   bool withheld = false;  // exists, but its effect waits to be switched on
@@ -48,7 +52,9 @@ struct BoundOperator {
   /// Whose change makes diagnose or the conditions stale: columns of the store, and the surface
   /// fields counted on from there.
   std::vector<int> read_columns;
-  bool dormant = false;  // not called: all its effects wait to be switched on
+  bool dormant = false;        // not called: all its effects wait to be switched on
+  std::vector<MeshSlot> mesh;  // to be made before its hooks are called
+  bool moves_parcels = false;  // apply writes positions
 
   const pileus_operator& op() const { return entry->table->op; }
   bool is_local() const { return op().scope == PILEUS_LOCAL; }
@@ -57,11 +63,18 @@ struct BoundOperator {
 /// Takes over which effects of the entry are on: at the start, and when one is switched on.
 void follow_effects(BoundOperator& bound);
 
-/// Binds an operator to the store's columns and to the surface.
+/// The mesh that operators are bound to; both are null in a run without one.
+struct BoundMesh {
+  MeshQuantities* quantities = nullptr;
+  const MeshExtension* extension = nullptr;  // for operators of global scope
+};
+
+/// Binds an operator to the store's columns, to the surface and to the mesh.
 /// Errors  Error(ExitCode::usage) if a quantity has no column in this store (y_position in 2D), or
 ///         the scope is not offered
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
-                            const SurfaceFields& surface, std::uint32_t stream,
+                            const SurfaceFields& surface, const BoundMesh& mesh,
+                            std::uint32_t stream,
                             const std::atomic<bool>* stop);
 
 }  // namespace pileus::coupling

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
@@ -26,6 +27,13 @@ std::uint32_t stream_of(const std::string& name) {
 }
 
 constexpr std::uint32_t second_half_bit = 0x80000000u;
+
+/// Processor time of all threads of this process, s.
+double core_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 void check_names(const std::vector<OperatorEntry>& operators) {
   std::vector<std::string> seen;
@@ -97,14 +105,19 @@ std::vector<std::string> OperatorSequence::order() const {
   return names;
 }
 
-void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_grid>& grid) {
+void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_grid>& grid,
+                            MeshAccess* mesh) {
   store_ = &store;
   grid_ = grid;
   surface_.start(grid ? static_cast<std::size_t>(grid->cells[0] * grid->cells[1]) : 1);
-  bound_.clear();
+  bound_.clear();  // before the mesh it is bound to
   progress_.clear();
+  mesh_extension_ = mesh != nullptr ? std::make_unique<MeshExtension>(*mesh, store) : nullptr;
+  mesh_quantities_ = mesh != nullptr ? std::make_unique<MeshQuantities>(*mesh, store) : nullptr;
+  const BoundMesh bound_mesh{mesh_quantities_.get(), mesh_extension_.get()};
   for (const OperatorEntry& entry : operators_) {
-    bound_.push_back(bind_operator(entry, store, surface_, stream_of(entry.name), options_.stop));
+    bound_.push_back(bind_operator(entry, store, surface_, bound_mesh, stream_of(entry.name),
+                                   options_.stop));
     OperatorProgress& progress = progress_.emplace_back();
     for (const BoundCondition& c : bound_.back().conditions) {
       progress.condition_columns.push_back(c.column);
@@ -112,7 +125,8 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
     progress.change.resize(entry.table->budgets.size());
     progress.source.resize(entry.table->budgets.size());
   }
-  runner_ = std::make_unique<BlockRunner>(bound_, store, surface_, grid_ ? &*grid_ : nullptr);
+  runner_ = std::make_unique<BlockRunner>(bound_, store, surface_, grid_ ? &*grid_ : nullptr,
+                                          mesh_quantities_.get());
   versions_.assign(static_cast<std::size_t>(store.column_count()) + surface_.list().size(),
                    next_version_++);
   previous_height_ = find_column(store, previous_height_name);
@@ -357,15 +371,27 @@ void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_
     audit_idle(which, step_record(bound_[which], at, second_half));
     return;
   }
+  make_mesh_quantities(which);
   const int substeps = prepare(which, at, second_half);
   pileus_step step = step_record(bound_[which], at, second_half);
   step.dt = at.dt / substeps;
   for (int k = 0; k < substeps; ++k) {
-    if (k > 0) refresh(at);
+    if (k > 0) {
+      refresh(at);
+      make_mesh_quantities(which);
+    }
     step.time = at.time + k * step.dt;
     step.call = static_cast<std::uint32_t>(k) * calls_per_substep;
     apply_once(which, step);
   }
+}
+
+/// The time, of all threads, is charged to the operator that asks first.
+void OperatorSequence::make_mesh_quantities(std::size_t which) {
+  if (bound_[which].mesh.empty()) return;
+  const double before = core_seconds();
+  mesh_quantities_->update(bound_[which].mesh, versions_);
+  whole_.applied[which].seconds += core_seconds() - before;
 }
 
 /// Calls the prepare hook and returns the number of sub-steps its limit asks for.
@@ -420,6 +446,7 @@ void OperatorSequence::apply_once(std::size_t which, const pileus_step& step) {
   }
   throw_first_failure();
   throw_first_finding();
+  if (bound.moves_parcels && mesh_quantities_ != nullptr) mesh_quantities_->access().confine();
   close_books(which, blocks);
 }
 

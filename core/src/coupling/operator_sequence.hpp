@@ -15,6 +15,7 @@
 #include "coupling/block_runner.hpp"
 #include "coupling/failure.hpp"
 #include "coupling/ledger.hpp"
+#include "coupling/mesh_access.hpp"
 #include "coupling/operator_entry.hpp"
 #include "coupling/operator_progress.hpp"
 #include "coupling/quantity_plan.hpp"
@@ -78,10 +79,12 @@ class OperatorSequence {
   /// Names of the operators with an apply hook, outermost first.
   std::vector<std::string> order() const;
 
-  /// Creates and configures the instances on the columns of `store`, which must outlive this. The
-  /// surface has the columns of `grid`; a box without one stands on a single column.
+  /// Creates and configures the instances on the columns of `store` and on `mesh` (null: a run
+  /// without one), which must outlive this. The surface has the columns of `grid`; a box without one
+  /// stands on a single column.
   /// Errors  Error(ExitCode::plugin) if a plugin refuses its parameters
-  void bind(parcels::Store& store, const std::optional<pileus_grid>& grid);
+  void bind(parcels::Store& store, const std::optional<pileus_grid>& grid,
+            MeshAccess* mesh = nullptr);
 
   /// Starts a new run: owned quantities get their declared value, except those of `initial`, and
   /// the plugins' init hooks are called. Then diagnoses.
@@ -123,6 +126,7 @@ class OperatorSequence {
   void apply(std::size_t which, const StepTime& at, bool second_half);
   bool skip_by_epoch(std::size_t which);
   int prepare(std::size_t which, const StepTime& at, bool second_half);
+  void make_mesh_quantities(std::size_t which);
   void apply_once(std::size_t which, const pileus_step& step);
   ActiveParcels find_active_parcels(std::size_t which, const ParcelRange& range, Workspace& work);
   void audit_block(std::size_t which, const pileus_step& step, const ParcelRange& range,
@@ -148,6 +152,8 @@ class OperatorSequence {
   parcels::Store* store_ = nullptr;
   std::optional<pileus_grid> grid_;
   int previous_height_ = -1;  // column, if an operator asks for it
+  std::unique_ptr<MeshExtension> mesh_extension_;
+  std::unique_ptr<MeshQuantities> mesh_quantities_;  // null without a mesh
   std::vector<BoundOperator> bound_;
   std::unique_ptr<BlockRunner> runner_;
   BlockBounds bounds_;

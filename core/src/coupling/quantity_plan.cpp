@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/quantities.hpp"
+#include "mesh/flow_quantities.hpp"
 
 namespace pileus::coupling {
 namespace {
@@ -20,6 +21,7 @@ struct Claim {
   const OperatorEntry* by;
   const pileus_quantity* row;
   bool creates() const { return (row->access & PILEUS_CREATE) != 0; }
+  bool optional() const { return (row->access & PILEUS_OPTIONAL) != 0; }
 };
 
 /// Claims by name, names in the order of their first appearance.
@@ -41,6 +43,7 @@ class Planner {
 
   QuantityPlan plan() {
     collect();
+    keep_those_called_for();
     for (const std::string& name : initial_) check_name(name, "the initial state");
     QuantityPlan plan;
     if (!claims_.know(buoyancy_name)) {
@@ -70,11 +73,27 @@ class Planner {
         const pileus_quantity& row = table.quantities[i];
         if (!entry.exists(i)) continue;
         if (!check_support(entry, row)) continue;
-        if (row.place == PILEUS_PARCEL && is_core_quantity(row.name)) continue;
+        if (row.place != PILEUS_SURFACE && is_core_quantity(row.name)) continue;
         check_units(entry, row);
-        (row.place == PILEUS_SURFACE ? surface_claims_ : claims_).add({&entry, &row});
+        if (row.place == PILEUS_SURFACE) {
+          surface_claims_.add({&entry, &row});
+        } else if (row.place == PILEUS_PARCEL || !mesh::is_flow_quantity(row.name)) {
+          claims_.add({&entry, &row});
+        }
       }
     }
+  }
+
+  /// Optional quantities that nobody else brings about do not exist.
+  void keep_those_called_for() {
+    std::erase_if(claims_.names, [&](const std::string& name) {
+      const std::vector<Claim>& claims = claims_.of.at(name);
+      const bool unwanted =
+          initial_.count(name) == 0 &&
+          std::all_of(claims.begin(), claims.end(), [](const Claim& c) { return c.optional(); });
+      if (unwanted) claims_.of.erase(name);
+      return unwanted;
+    });
   }
 
   bool check_support(const OperatorEntry& entry, const pileus_quantity& row) {
@@ -84,7 +103,13 @@ class Planner {
       return false;
     };
     if (row.place == PILEUS_SURFACE) return check_surface_support(entry, row);
-    if (row.place != PILEUS_PARCEL) return refuse("elsewhere than on the parcels or the surface");
+    const bool on_mesh = row.place == PILEUS_MESH || row.place == PILEUS_MESH_AT_PARCEL;
+    if (row.place != PILEUS_PARCEL && !on_mesh) {
+      return refuse("elsewhere than on the parcels, the surface or the mesh");
+    }
+    if (on_mesh && entry.table->op.diagnose != nullptr) {
+      return refuse("on the mesh, and derives quantities in every stage,");
+    }
     if (row.type != PILEUS_F64 || row.components != 1) {
       return refuse("as something other than one double-precision number per parcel");
     }
@@ -190,7 +215,9 @@ class Planner {
       if (decisive == nullptr && claim.row->nature != 0) decisive = &claim;
     }
     if (owner != nullptr) decisive = owner;
-    check_source(name, claims.front(), owner);
+    const auto needing = std::find_if(claims.begin(), claims.end(),
+                                      [](const Claim& claim) { return !claim.optional(); });
+    if (needing != claims.end()) check_source(name, *needing, owner);
     parcels::Scalar scalar = passive(name);
     if (decisive == nullptr) return scalar;
     const pileus_quantity& row = *decisive->row;
@@ -272,6 +299,18 @@ class Planner {
   std::string problems_;
 };
 
+/// Position of shape_xx … shape_zz in the store's order of the shape matrix, or −1.
+int shape_component(int dimension, std::string_view name) {
+  static constexpr std::array<std::string_view, 6> space = {"shape_xx", "shape_xy", "shape_xz",
+                                                            "shape_yy", "shape_yz", "shape_zz"};
+  static constexpr std::array<std::string_view, 3> plane = {"shape_xx", "shape_xz", "shape_zz"};
+  const auto position = [&](const auto& names) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  };
+  return dimension == 3 ? position(space) : position(plane);
+}
+
 }  // namespace
 
 QuantityPlan plan_quantities(const std::vector<OperatorEntry>& operators,
@@ -280,16 +319,18 @@ QuantityPlan plan_quantities(const std::vector<OperatorEntry>& operators,
 }
 
 bool is_core_quantity(std::string_view name) {
-  static constexpr std::array<std::string_view, 15> names = {
-      height_name,   volume_name,   "x_position",  "y_position", "z_position",
-      "x_vorticity", "y_vorticity", "z_vorticity", "vorticity",  "B11",
-      "B12",         "B13",         "B22",         "B23",        "B33"};
-  return std::find(names.begin(), names.end(), name) != names.end();
+  static constexpr std::array<std::string_view, 9> names = {
+      height_name, volume_name,   "x_position",  "y_position", "z_position",
+      "vorticity", "x_vorticity", "y_vorticity", "z_vorticity"};
+  return std::find(names.begin(), names.end(), name) != names.end() ||
+         shape_component(3, name) >= 0;
 }
 
 int find_column(const parcels::Store& store, std::string_view name) {
   if (name == height_name) return store.dimension() - 1;
   if (name == volume_name) return store.dimension();
+  if (const int component = shape_component(store.dimension(), name); component >= 0)
+    return store.dimension() + 1 + store.vorticity_components() + component;
   for (int c = 0; c < store.column_count(); ++c) {
     if (store.column_name(c) == name) return c;
   }

@@ -69,6 +69,15 @@ void ParcelMotion<D>::deposit_state(parcels::Store& store, const double* buoyanc
 }
 
 template <int D>
+void ParcelMotion<D>::deposit_vorticity(const parcels::Store& store,
+                                        const std::vector<std::size_t>& tile_begin) {
+  deposit_values_.clear();
+  for (int c = 0; c < store.vorticity_components(); ++c)
+    deposit_values_.push_back(store.vorticity(c));
+  deposit_.means(store, tile_begin, deposit_values_, {}, deposited_.data());
+}
+
+template <int D>
 StageJob<D> ParcelMotion<D>::stage_job(parcels::Store& store, std::size_t s, double dt,
                                        bool evaluate_only) {
   StageJob<D> whole{};

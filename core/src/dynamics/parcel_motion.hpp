@@ -44,6 +44,12 @@ class ParcelMotion {
                                             const MeanWind& wind, double time,
                                             PhaseTimes& times) = 0;
 
+  /// The velocity and its gradient of the present state into flow(), without tendencies: for
+  /// operators between the stages and the next evaluate(), which is needed before another stage.
+  virtual void evaluate_velocity(const parcels::Store& store,
+                                 const std::vector<std::size_t>& tile_begin, const MeanWind& wind,
+                                 PhaseTimes& times) = 0;
+
   /// First stage of a step of `dt` from the state just evaluated.
   virtual void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) = 0;
   /// Velocity of every parcel (m s⁻¹) at the state of the last evaluate(); valid between
@@ -78,6 +84,8 @@ class ParcelMotion {
   /// Deposits volume, vorticity and the buoyancy's deviation from the reference.
   void deposit_state(parcels::Store& store, const double* buoyancy,
                      const std::vector<std::size_t>& tile_begin);
+  /// Deposits volume and vorticity.
+  void deposit_vorticity(const parcels::Store& store, const std::vector<std::size_t>& tile_begin);
   /// Stage `s` for all parcels; without pointers to a flow.
   StageJob<D> stage_job(parcels::Store& store, std::size_t s, double dt, bool evaluate_only);
 

@@ -22,6 +22,9 @@ class PrescribedTransport final : public ParcelMotion<D> {
   const mesh::FlowSummary& evaluate(parcels::Store& store, BuoyancySource& source,
                                     const std::vector<std::size_t>& tile_begin,
                                     const MeanWind& wind, double time, PhaseTimes& times) override;
+  /// The flow does not depend on the parcels: flow() stays that of the last evaluate().
+  void evaluate_velocity(const parcels::Store&, const std::vector<std::size_t>&, const MeanWind&,
+                         PhaseTimes&) override {}
   void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) override;
   void finish_step(parcels::Store& store, BuoyancySource& source,
                    const std::vector<std::size_t>& tile_begin, MeanWind& wind, double time,

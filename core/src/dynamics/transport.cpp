@@ -79,6 +79,22 @@ const mesh::FlowSummary& Transport<D>::evaluate(parcels::Store& store, BuoyancyS
 }
 
 template <int D>
+void Transport<D>::evaluate_velocity(const parcels::Store& store,
+                                     const std::vector<std::size_t>& tile_begin,
+                                     const MeanWind& wind, PhaseTimes& times) {
+  {
+    const PhaseScope scope(times, Phase::deposit);
+    deposit_vorticity(store, tile_begin);
+  }
+  {
+    const PhaseScope scope(times, Phase::compensation);
+    sharpen_deposited_.apply(deposited_.data());
+  }
+  solver_.invert(deposited_.data(), wind.velocity, flow_.data(), times);
+  flow_is_sharp_ = false;
+}
+
+template <int D>
 void Transport<D>::stage(parcels::Store& store, MeanWind& wind, std::size_t s, double dt,
                          bool evaluate_only, PhaseTimes& times) {
   sharpen_flow(times);

@@ -22,6 +22,8 @@ class Transport final : public ParcelMotion<D> {
   const mesh::FlowSummary& evaluate(parcels::Store& store, BuoyancySource& source,
                                     const std::vector<std::size_t>& tile_begin,
                                     const MeanWind& wind, double time, PhaseTimes& times) override;
+  void evaluate_velocity(const parcels::Store& store, const std::vector<std::size_t>& tile_begin,
+                         const MeanWind& wind, PhaseTimes& times) override;
   void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) override;
   /// Also settles the net vorticity.
   void finish_step(parcels::Store& store, BuoyancySource& source,
@@ -36,7 +38,7 @@ class Transport final : public ParcelMotion<D> {
 
  private:
   using Base = ParcelMotion<D>;
-  using Base::deposit_state, Base::reserve, Base::stage_job;
+  using Base::deposit_state, Base::deposit_vorticity, Base::reserve, Base::stage_job;
   using Base::deposited_, Base::flow_, Base::summary_, Base::broken_shapes_;
   using Base::grid_, Base::scheme_;
 

@@ -22,6 +22,7 @@ std::string access_words(std::uint32_t access) {
   add(PILEUS_READ, "reads");
   add(PILEUS_WRITE, "writes");
   add(PILEUS_ADD, "adds");
+  add(PILEUS_OPTIONAL, "if there");
   return text;
 }
 
@@ -90,6 +91,7 @@ void print_quantities(const OperatorTable& t, std::string& out) {
     std::string nature = q.nature != 0 ? words::nature(q.nature) : "";
     if (q.budget != nullptr) nature += fmt::format(" (budget {})", q.budget);
     std::string note = or_empty(q.doc);
+    if (q.place != PILEUS_PARCEL) note += fmt::format(" (place: {})", words::place(q.place));
     if (q.when != nullptr) note += fmt::format(" (when {})", q.when);
     table.add({q.name, q.units, access_words(q.access), nature, range_text(q.low, q.high), note});
   }

@@ -18,6 +18,7 @@ Json quantity_json(const pileus_quantity& q) {
   if ((q.access & PILEUS_READ) != 0) access.push_back("read");
   if ((q.access & PILEUS_WRITE) != 0) access.push_back("write");
   if ((q.access & PILEUS_ADD) != 0) access.push_back("add");
+  if ((q.access & PILEUS_OPTIONAL) != 0) access.push_back("optional");
   return {{"name", q.name},
           {"units", q.units},
           {"place", words::place(q.place)},

@@ -92,8 +92,8 @@ void Instance::refuse(const char* phase, const CallResult& result) const {
                                     table_->library + "')");
 }
 
-Instance::Instance(std::shared_ptr<const OperatorTable> table, const std::atomic<bool>* stop)
-    : table_(std::move(table)), services_(table_->op.id, stop) {
+Instance::Instance(std::shared_ptr<const OperatorTable> table, const Lent& lent)
+    : table_(std::move(table)), services_(table_->op.id, lent) {
   const CallResult result = call(LifeCall::create, 0, -1, [&](pileus_error* error) {
     return table_->op.create(&services_.table(), &self_, error);
   });

@@ -28,9 +28,8 @@ const char* describe_status(pileus_status status);
 /// threads at once with disjoint blocks.
 class Instance {
  public:
-  /// Creates the instance. `stop` answers the plugin's should_stop and may be null.
-  /// Errors  Error(ExitCode::plugin) if create fails
-  Instance(std::shared_ptr<const OperatorTable> table, const std::atomic<bool>* stop);
+  /// Creates the instance. Errors  Error(ExitCode::plugin) if create fails
+  Instance(std::shared_ptr<const OperatorTable> table, const Lent& lent);
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;

@@ -84,10 +84,17 @@ void check_quantity(const pileus_quantity& q, const std::string& place, const Op
   c.require(words::rule.knows(q.on_merge) && words::rule.knows(q.on_split), place,
             "has an unknown merge or split rule");
   c.require(q.components >= 1 && q.components <= 9, place, "has no or too many components");
-  constexpr std::uint32_t known = PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD;
+  constexpr std::uint32_t known =
+      PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD | PILEUS_OPTIONAL;
   c.require(q.access != 0 && (q.access & ~known) == 0, place, "has no or an unknown access");
   c.require(q.low <= q.high, place, "has a range whose low end is not below its high end");
   check_nature(q, place, c);
+  c.require((q.access & PILEUS_OPTIONAL) == 0 || (q.access & PILEUS_CREATE) == 0, place,
+            "is owned and optional at once: what is owned always exists");
+  if (q.place == PILEUS_MESH || q.place == PILEUS_MESH_AT_PARCEL) {
+    c.require((q.access & ~(PILEUS_READ | PILEUS_OPTIONAL)) == 0, place,
+              "lives on the mesh, which operators only read");
+  }
   const bool writes = (q.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
   if (q.nature == PILEUS_DERIVED) {
     c.require(t.op.diagnose != nullptr, place, "is derived but the operator has no diagnose");
@@ -226,12 +233,21 @@ When parse_when(const char* text, const std::string& place, const OperatorTable&
   }
 }
 
-template <class Row>
-void check_unique(const std::vector<Row>& rows, const char* what, Complaints& c) {
+void check_unique_parameters(const std::vector<pileus_parameter>& rows, Complaints& c) {
   std::set<std::string> seen;
-  for (const Row& row : rows) {
+  for (const pileus_parameter& row : rows) {
     if (row.name != nullptr && !seen.insert(row.name).second) {
-      c.add(what, "'" + std::string(row.name) + "' is declared twice");
+      c.add("parameter", "'" + std::string(row.name) + "' is declared twice");
+    }
+  }
+}
+
+/// One quantity may be declared at several places: on the parcels and on the mesh.
+void check_unique_quantities(const std::vector<pileus_quantity>& rows, Complaints& c) {
+  std::set<std::pair<std::uint32_t, std::string>> seen;
+  for (const pileus_quantity& row : rows) {
+    if (row.name != nullptr && !seen.emplace(row.place, row.name).second) {
+      c.add("quantity", "'" + std::string(row.name) + "' is declared twice");
     }
   }
 }
@@ -269,8 +285,8 @@ void check_rows(OperatorTable& t, Complaints& c) {
     check_condition(t.active_if[i], "activity condition " + std::to_string(i), t, c);
   }
   for (const pileus_reference& row : t.references) c.text(row.text, "reference text");
-  check_unique(t.quantities, "quantity", c);
-  check_unique(t.parameters, "parameter", c);
+  check_unique_quantities(t.quantities, c);
+  check_unique_parameters(t.parameters, c);
 }
 
 /// Parameters and effects are there before anybody knows which effects are on.
@@ -305,6 +321,7 @@ int OperatorTable::find_parameter(std::string_view name) const {
 
 int OperatorTable::find_quantity(std::string_view name) const {
   for (std::size_t i = 0; i < quantities.size(); ++i) {
+    if (quantities[i].place != PILEUS_PARCEL) continue;
     if (quantities[i].name != nullptr && name == quantities[i].name) return static_cast<int>(i);
   }
   return -1;

@@ -89,10 +89,6 @@ pileus_status loop_in_parallel(const pileus_host*, std::int64_t n, std::int64_t 
   }
 }
 
-const void* find_extension(const pileus_host*, const char*) {
-  return nullptr;
-}
-
 std::uint64_t now_ns() {
   const auto since = std::chrono::steady_clock::now().time_since_epoch();
   return static_cast<std::uint64_t>(
@@ -101,8 +97,8 @@ std::uint64_t now_ns() {
 
 }  // namespace
 
-Services::Services(std::string operator_id, const std::atomic<bool>* stop)
-    : id_(std::move(operator_id)), stop_(stop) {
+Services::Services(std::string operator_id, const Lent& lent)
+    : id_(std::move(operator_id)), lent_(lent) {
   table_.size = sizeof table_;
   table_.abi_minor = PILEUS_ABI_MINOR;
   table_.impl = this;
@@ -125,8 +121,13 @@ void Services::write_log(const pileus_host* host, std::uint32_t level, const cha
 }
 
 int Services::answer_should_stop(const pileus_host* host) {
-  const std::atomic<bool>* stop = self(host).stop_;
+  const std::atomic<bool>* stop = self(host).lent_.stop;
   return stop != nullptr && stop->load(std::memory_order_relaxed) ? 1 : 0;
+}
+
+const void* Services::find_extension(const pileus_host* host, const char* id) {
+  const bool mesh = id != nullptr && std::strcmp(id, PILEUS_MESH_EXTENSION) == 0;
+  return mesh ? self(host).lent_.mesh : nullptr;
 }
 
 // A token is the time in nanoseconds with its top four bits replaced by the timer's number; 2^60 ns

@@ -19,11 +19,17 @@ struct Span {
   double seconds = 0;  // summed over threads
 };
 
+/// What the core lends to an instance beside the services themselves; both may be null.
+struct Lent {
+  const std::atomic<bool>* stop = nullptr;  // answers should_stop
+  const pileus_mesh_ext* mesh = nullptr;    // the extension pileus.mesh/1
+};
+
 /// The service table of one instance. Does not move: the plugin keeps its address.
 class Services {
  public:
-  /// `operator_id` prefixes log records; `stop`, if any, answers should_stop.
-  Services(std::string operator_id, const std::atomic<bool>* stop);
+  /// `operator_id` prefixes log records.
+  Services(std::string operator_id, const Lent& lent);
   Services(const Services&) = delete;
   Services& operator=(const Services&) = delete;
 
@@ -37,6 +43,7 @@ class Services {
   }
   static void write_log(const pileus_host*, std::uint32_t level, const char* text);
   static int answer_should_stop(const pileus_host*);
+  static const void* find_extension(const pileus_host*, const char* id);
   static std::uint64_t begin_span(const pileus_host*, const char* name);
   static void end_span(const pileus_host*, std::uint64_t token);
   static void count_repairs(const pileus_host*, std::uint64_t count);
@@ -48,7 +55,7 @@ class Services {
   static constexpr std::size_t most_timers = 15;  // an index of four bits, 0 meaning none
 
   std::string id_;
-  const std::atomic<bool>* stop_;
+  Lent lent_;
   pileus_host table_{};
   mutable std::array<Timer, most_timers> timers_;
   mutable std::atomic<std::size_t> timer_count_ = 0;

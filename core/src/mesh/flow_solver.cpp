@@ -76,6 +76,13 @@ void FlowSolver<D>::solve(const double* deposited, std::array<double, 2> mean_wi
 }
 
 template <int D>
+void FlowSolver<D>::invert(const double* deposited, std::array<double, 2> mean_wind, double* flow,
+                           PhaseTimes& times) {
+  const PhaseScope scope(times, Phase::inversion);
+  stages_->invert(deposited, mean_wind, flow, nullptr);
+}
+
+template <int D>
 std::size_t FlowSolver<D>::allocated_bytes() const {
   return stages_->inversion.allocated_bytes() + stages_->tendency.allocated_bytes();
 }

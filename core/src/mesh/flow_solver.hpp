@@ -35,6 +35,10 @@ class FlowSolver {
   void solve(const double* deposited, std::array<double, 2> mean_wind, double* flow,
              FlowSummary* summary, PhaseTimes& times);
 
+  /// Velocity and velocity gradient alone: the tendencies in `flow` are left as they are.
+  void invert(const double* deposited, std::array<double, 2> mean_wind, double* flow,
+              PhaseTimes& times);
+
   std::size_t allocated_bytes() const;
 
  private:

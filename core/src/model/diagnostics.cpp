@@ -42,8 +42,27 @@ struct VelocitySums {
 };
 
 struct CloudSums {
-  double liquid = 0, cloudy = 0, cloudy_liquid = 0, high = 0;
+  double liquid = 0, high = 0;
+  double cloudy = 0, cloudy_liquid = 0, cloudy_water = 0;  // over cloudy parcels
+  double liquid_squared = 0, water_squared = 0;
+  CloudSums& operator+=(const CloudSums& o) {
+    liquid += o.liquid;
+    high = std::max(high, o.high);
+    cloudy += o.cloudy;
+    cloudy_liquid += o.cloudy_liquid;
+    cloudy_water += o.cloudy_water;
+    liquid_squared += o.liquid_squared;
+    water_squared += o.water_squared;
+    return *this;
+  }
 };
+
+/// Standard deviation from sums weighted by volume; zero where rounding has made it negative.
+double deviation(double volume, double sum, double squares) {
+  if (!(volume > 0)) return 0.0;
+  const double mean = sum / volume;
+  return std::sqrt(std::max(0.0, squares / volume - mean * mean));
+}
 
 }  // namespace
 
@@ -142,6 +161,13 @@ void Diagnostics::add_water(const scene::Scene& scene, const Simulation& simulat
     cloud_mean_liquid_ = add("cloud_mean_liquid_water", "1", "mean liquid water of cloudy air");
     liquid_path_ = add("atmosphere_mass_content_of_cloud_liquid_water", "kg m-2",
                        "mean mass of cloud liquid water over an area of the ground");
+    cloud_liquid_deviation_ = add("cloud_liquid_water_deviation", "1",
+                                  "standard deviation of the liquid water of cloudy air");
+  }
+  if (liquid_scalar_ >= 0 && water_scalar_ >= 0) {
+    cloud_mean_water_ = add("cloud_mean_total_water", "1", "mean total water of cloudy air");
+    cloud_water_deviation_ = add("cloud_total_water_deviation", "1",
+                                 "standard deviation of the total water of cloudy air");
   }
   rain_scalar_ = store.find_scalar(rain_name);
   if (rain_scalar_ >= 0)
@@ -287,6 +313,7 @@ void Diagnostics::observe_cloud(const Simulation& simulation) {
   const parcels::Store& store = simulation.store();
   const double* volume = store.volume();
   const double* liquid = store.scalar(liquid_scalar_);
+  const double* water = water_scalar_ >= 0 ? store.scalar(water_scalar_) : nullptr;
   const CloudSums sums = ordered_reduce(
       store.size(), CloudSums{},
       [&](std::size_t begin, std::size_t end) {
@@ -294,23 +321,26 @@ void Diagnostics::observe_cloud(const Simulation& simulation) {
         for (std::size_t p = begin; p < end; ++p) {
           s.liquid += volume[p] * liquid[p];
           s.high = std::max(s.high, liquid[p]);
-          if (liquid[p] > cloud_threshold_) {
-            s.cloudy += volume[p];
-            s.cloudy_liquid += volume[p] * liquid[p];
-          }
+          if (!(liquid[p] > cloud_threshold_)) continue;
+          s.cloudy += volume[p];
+          s.cloudy_liquid += volume[p] * liquid[p];
+          s.liquid_squared += volume[p] * liquid[p] * liquid[p];
+          if (water == nullptr) continue;
+          s.cloudy_water += volume[p] * water[p];
+          s.water_squared += volume[p] * water[p] * water[p];
         }
         return s;
       },
-      [](CloudSums a, const CloudSums& o) {
-        return CloudSums{a.liquid + o.liquid, a.cloudy + o.cloudy,
-                         a.cloudy_liquid + o.cloudy_liquid, std::max(a.high, o.high)};
-      });
+      [](CloudSums a, const CloudSums& o) { return a += o; });
   const double inverse = 1.0 / simulation.domain_volume();
   set(liquid_path_, water_path_->measure(simulation, liquid));
   set(mean_liquid_, sums.liquid * inverse);
   set(max_liquid_, sums.high);
   set(cloud_fraction_, sums.cloudy * inverse);
   set(cloud_mean_liquid_, sums.cloudy > 0 ? sums.cloudy_liquid / sums.cloudy : 0.0);
+  set(cloud_liquid_deviation_, deviation(sums.cloudy, sums.cloudy_liquid, sums.liquid_squared));
+  set(cloud_mean_water_, sums.cloudy > 0 ? sums.cloudy_water / sums.cloudy : 0.0);
+  set(cloud_water_deviation_, deviation(sums.cloudy, sums.cloudy_water, sums.water_squared));
 }
 
 void Diagnostics::observe_surface() {

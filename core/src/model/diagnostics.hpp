@@ -87,7 +87,8 @@ class Diagnostics {
       min_vertical_velocity_, max_vorticity_, volume_error_rms_, volume_error_max_, parcels_;
   std::vector<int> mean_wind_, mean_vorticity_;
   int total_water_ = -1, mean_liquid_ = -1, max_liquid_ = -1, cloud_fraction_ = -1,
-      cloud_mean_liquid_ = -1, liquid_path_ = -1, rain_path_ = -1;
+      cloud_mean_liquid_ = -1, cloud_liquid_deviation_ = -1, cloud_mean_water_ = -1,
+      cloud_water_deviation_ = -1, liquid_path_ = -1, rain_path_ = -1;
 };
 
 }  // namespace pileus::model

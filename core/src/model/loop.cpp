@@ -53,7 +53,7 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
       sequence_(std::move(planned.operators), sequence_options(scene)),
       physics_(sequence_, planner::Tripwires(plan_)),
       simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
-  sequence_.bind(simulation_->store(), simulation_->plugin_grid());
+  sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
   diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface());
   check_expectations(scene.expect, diagnostics_->list());
   record_ = std::make_unique<Record>(diagnostics_->list());

@@ -79,6 +79,8 @@ class Simulation {
   virtual double height() const = 0;  // m
   /// The mesh as plugins see it.
   virtual pileus_grid plugin_grid() const = 0;
+  /// The mesh as operators use it; between finish_step's stages and evaluate().
+  virtual coupling::MeshAccess& mesh_access() = 0;
   virtual std::vector<output::Axis> axes() const = 0;
   virtual std::vector<output::Axis> ground_axes() const = 0;
   /// Nodes in file order (z slowest, x fastest): horizontal count times n_z + 1.

@@ -91,6 +91,8 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
                           scene.parcels.max_compression}) {
   require_countable(grid_, scene.parcels.per_cell);
   store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
+  mesh_access_.reset(
+      new MeshAccessOf<D>({grid_, *store_, deposit_, tile_begin_, transport_, wind_}));
 }
 
 template <int D>

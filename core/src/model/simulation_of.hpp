@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "model/mesh_access_of.hpp"
 #include "model/simulation.hpp"
 
 namespace pileus::model {
@@ -32,6 +33,7 @@ class SimulationOf final : public Simulation {
   double bottom() const override { return grid_.bottom(); }
   double height() const override { return grid_.extent[D - 1]; }
   pileus_grid plugin_grid() const override { return coupling::abi_grid(grid_); }
+  coupling::MeshAccess& mesh_access() override { return *mesh_access_; }
   std::vector<output::Axis> axes() const override;
   std::vector<output::Axis> ground_axes() const override;
   std::size_t node_count() const override {
@@ -75,6 +77,7 @@ class SimulationOf final : public Simulation {
   parcels::Upkeep<D> upkeep_;
   parcels::VolumeCorrection<D> correction_;
   std::vector<std::size_t> tile_begin_;
+  std::unique_ptr<MeshAccessOf<D>> mesh_access_;
   mesh::FlowSummary flow_summary_;
   dynamics::TimeStep allowed_{0, ""};
 };

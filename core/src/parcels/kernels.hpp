@@ -28,6 +28,19 @@ struct DepositJob {
   std::size_t stray_count;
 };
 
+/// Interpolation of gridded records of 8 (2D: 4) doubles to the parcels' support points.
+template <int D>
+struct InterpolateJob {
+  KernelGrid<D> grid;
+  const double* position[D];
+  const double* shape[D == 3 ? 6 : 3];
+  const double* offset[D == 3 ? 6 : 2];  // null: computed from the shapes
+  const double* field;                   // nodes × record, levels beyond the walls included
+  double* value[8];                      // out: values 0 … value_count − 1 of the record
+  int value_count;
+  std::size_t begin, end;
+};
+
 /// Displacement of parcel centres by a gridded vector field (Laplace volume correction).
 template <int D>
 struct DisplaceJob {
@@ -60,6 +73,8 @@ struct Kernels {
   /// Adds the volume alone to one double per node.
   void (*deposit_volume_3d)(DepositJob<3>&);
   void (*deposit_volume_2d)(DepositJob<2>&);
+  void (*interpolate_3d)(const InterpolateJob<3>&);
+  void (*interpolate_2d)(const InterpolateJob<2>&);
   void (*displace_3d)(const DisplaceJob<3>&);
   void (*displace_2d)(const DisplaceJob<2>&);
   void (*compress_3d)(const CompressJob<3>&);

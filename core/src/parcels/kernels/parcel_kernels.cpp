@@ -8,6 +8,7 @@ namespace {
 using parcels::CompressJob;
 using parcels::DepositJob;
 using parcels::DisplaceJob;
+using parcels::InterpolateJob;
 
 // ---- support points ------------------------------------------------------------------------
 
@@ -256,6 +257,49 @@ void deposit_volume_2d(DepositJob<2>& job) {
   }
 }
 
+// ---- interpolation -------------------------------------------------------------------------
+
+/// Record of one lane: the same nodes and weights as the deposit's.
+template <int D, class Record>
+Record gather_record(const double* field, const Stencil<D>& stencil, int lane) {
+  Record sum{};
+  for_each_column(stencil, lane, [&](std::int32_t at, double below, double above) {
+    const Record* node = reinterpret_cast<const Record*>(field) + at;
+    sum += below * node[0] + above * node[1];
+  });
+  return sum;
+}
+
+void interpolate_3d(const InterpolateJob<3>& job) {
+  Stencil<3> stencil;
+  OffsetBlock<3> block;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job, p, block, stencil);
+    const std::size_t left = job.end - p;
+    const std::size_t count = left < lanes ? left : lanes;
+    Pack record[8];
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      record[lane] = lane < count
+                         ? gather_record<3, Pack>(job.field, stencil, static_cast<int>(lane))
+                         : Pack{};
+    transpose(record);
+    for (int f = 0; f < job.value_count; ++f)
+      __builtin_memcpy(job.value[f] + p, &record[f], count * sizeof(double));
+  }
+}
+
+void interpolate_2d(const InterpolateJob<2>& job) {
+  Stencil<2> stencil;
+  OffsetBlock<2> block;
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    place_points(job, p, block, stencil);
+    for (std::size_t lane = 0; lane < lanes && p + lane < job.end; ++lane) {
+      const Record2 record = gather_record<2, Record2>(job.field, stencil, static_cast<int>(lane));
+      for (int f = 0; f < job.value_count; ++f) job.value[f][p + lane] = record[f];
+    }
+  }
+}
+
 // ---- volume correction ---------------------------------------------------------------------
 
 void place_centre(const KernelGrid<3>& grid, double* const* position, std::size_t p,
@@ -368,6 +412,8 @@ const parcels::Kernels parcel_kernels = {
     .deposit_2d = deposit_2d,
     .deposit_volume_3d = deposit_volume_3d,
     .deposit_volume_2d = deposit_volume_2d,
+    .interpolate_3d = interpolate_3d,
+    .interpolate_2d = interpolate_2d,
     .displace_3d = displace<3>,
     .displace_2d = displace<2>,
     .compress_3d = compress_3d,
