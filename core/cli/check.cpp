@@ -29,6 +29,8 @@ void add_check(CLI::App& app, Action& action) {
   verb->add_option("--threads", request->threads, "Threads to use; default: one per core")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+  verb->add_flag("--all", request->all_bounds,
+                 "List every bound of every scene, also for folders of several scenes");
   verb->add_flag("--quiet", *quiet, "No progress, only the verdicts");
   verb->callback([&action, request, quiet] {
     action = [request, quiet] {

@@ -17,6 +17,7 @@ set(CMAKE_CXX_FLAGS_DEBUG "-Og -g")
 
 option(PILEUS_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 set(PILEUS_SANITIZER "" CACHE STRING "address, undefined, thread or empty")
+option(PILEUS_FUZZING "Build with clang's coverage for libFuzzer" OFF)
 
 find_program(PILEUS_CCACHE ccache)
 if(PILEUS_CCACHE)
@@ -36,6 +37,9 @@ target_compile_options(
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(PILEUS_WARNINGS_AS_ERRORS)
   target_compile_options(pileus_build INTERFACE -Werror)
+endif()
+if(PILEUS_FUZZING)
+  target_compile_options(pileus_build INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 if(PILEUS_SANITIZER)
   target_compile_options(pileus_build INTERFACE -fsanitize=${PILEUS_SANITIZER}

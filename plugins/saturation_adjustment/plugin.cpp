@@ -15,6 +15,8 @@ constexpr const char* condensing = "effect.condensation == on";
 
 /// Temperatures below this are no air the saturation formula is meant for, K.
 constexpr double coldest = 100.0;
+/// Below this air would be colder than that within a few kilometres of the ground, K.
+constexpr double coldest_theta = 150.0;
 
 class SaturationAdjustment : public Operator<SaturationAdjustment> {
  public:
@@ -82,7 +84,7 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
                       .doc("buoyancy of the parcel with all its liquid evaporated");
     theta_l_ = d.reads("liquid_water_potential_temperature", "K")
                    .intensive()
-                   .range(50.0, 2000.0)
+                   .range(coldest_theta, 2000.0)
                    .when(real)
                    .doc("potential temperature with all liquid evaporated");
     total_water_ = d.reads("total_water_mass_fraction", "1")

@@ -83,6 +83,12 @@ def scenes(root):
         for name in (f"{folder.name}.yaml", "README.md"):
             if not (folder / name).is_file():
                 found.append(f"{folder}: has no {name}")
+    hard = configs / "hard"
+    if hard.is_dir():
+        listed = (hard / "README.md").read_text(encoding="utf-8")
+        for path in sorted(hard.glob("*.yaml")):
+            if f"`{path.stem}`" not in listed:
+                found.append(f"{path}: README.md does not say what it is for")
     for path in tree.files(configs, suffixes={".yaml", ".yml"}):
         first = (tree.text_lines(path) or [""])[0]
         match = SCHEMA_LINE.match(first)

@@ -26,6 +26,10 @@ def newest_step(folder):
     return max((int(path.stem.split("_")[1]) for path in folder.glob("checkpoint_*.h5")), default=0)
 
 
+def merges_counted(ended):
+    return [phase["calls"] for phase in ended.summary["phases"] if phase["name"] == "merge"]
+
+
 class Restart(ProgramTest):
 
     def assert_equal_runs(self, resumed, whole):
@@ -33,6 +37,8 @@ class Restart(ProgramTest):
         self.assertEqual(resumed.summary["status"], "done")
         for same in ("steps", "simulated_time_s", "parcels", "diagnostics", "expect", "budgets"):
             self.assertEqual(resumed.summary[same], whole.summary[same], same)
+        # Times are those of all sessions together: every step merges once.
+        self.assertEqual(merges_counted(resumed), merges_counted(whole))
         self.assertEqual(differences(whole.out, resumed.out), [])
         leftovers = [path.name for path in resumed.out.iterdir()
                      if path.suffix in (".tmp", ".journal", ".lock")]

@@ -39,6 +39,9 @@ class PhaseTimes {
   Entry& operator[](Phase phase) { return entries_[static_cast<std::size_t>(phase)]; }
   const Entry& operator[](Phase phase) const { return entries_[static_cast<std::size_t>(phase)]; }
   void clear() { entries_ = {}; }
+  /// In the order of `Phase`.
+  auto begin() { return entries_.begin(); }
+  auto end() { return entries_.end(); }
 
  private:
   std::array<Entry, static_cast<std::size_t>(Phase::count_)> entries_{};

@@ -105,6 +105,14 @@ std::vector<std::string> OperatorSequence::order() const {
   return names;
 }
 
+std::vector<std::string> OperatorSequence::changed_quantities() const {
+  std::vector<std::string> names;
+  for (const std::size_t which : order_)
+    for (const pileus_quantity& row : operators_[which].table->quantities)
+      if ((row.access & (PILEUS_WRITE | PILEUS_ADD)) != 0) names.emplace_back(row.name);
+  return names;
+}
+
 void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_grid>& grid,
                             MeshAccess* mesh) {
   store_ = &store;
@@ -116,8 +124,8 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
   mesh_quantities_ = mesh != nullptr ? std::make_unique<MeshQuantities>(*mesh, store) : nullptr;
   const BoundMesh bound_mesh{mesh_quantities_.get(), mesh_extension_.get()};
   for (const OperatorEntry& entry : operators_) {
-    bound_.push_back(bind_operator(entry, store, surface_, bound_mesh, stream_of(entry.name),
-                                   options_.stop));
+    bound_.push_back(
+        bind_operator(entry, store, surface_, bound_mesh, stream_of(entry.name), options_.stop));
     OperatorProgress& progress = progress_.emplace_back();
     for (const BoundCondition& c : bound_.back().conditions) {
       progress.condition_columns.push_back(c.column);

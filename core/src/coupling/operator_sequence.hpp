@@ -76,13 +76,15 @@ class OperatorSequence {
   bool derives_buoyancy() const;
   bool empty() const { return operators_.empty(); }
   const std::vector<OperatorEntry>& operators() const { return operators_; }
+  /// Quantities that some operator's apply may change.
+  std::vector<std::string> changed_quantities() const;
   /// Names of the operators with an apply hook, outermost first.
   std::vector<std::string> order() const;
 
   /// Creates and configures the instances on the columns of `store` and on `mesh` (null: a run
-  /// without one), which must outlive this. The surface has the columns of `grid`; a box without one
-  /// stands on a single column.
-  /// Errors  Error(ExitCode::plugin) if a plugin refuses its parameters
+  /// without one), which must outlive this. The surface has the columns of `grid`; a box without
+  /// one stands on a single column. Errors  Error(ExitCode::plugin) if a plugin refuses its
+  /// parameters
   void bind(parcels::Store& store, const std::optional<pileus_grid>& grid,
             MeshAccess* mesh = nullptr);
 

@@ -32,14 +32,15 @@ struct StageJob {
   double* position_increment[D];
   double* vorticity_increment[vorticity_components];
   double* shape_increment[gradient_components];
-  double keep;         // A of the stage
-  double advance;      // B Δt of the stage; 0 with `evaluate_only`
-  bool first;          // increments hold nothing yet
-  bool last;           // restore det B = (V/V₁)² at the end
-  bool evaluate_only;  // k ← f, y untouched (diagnostics)
+  double keep;          // A of the stage
+  double advance;       // B Δt of the stage; 0 with `evaluate_only`
+  bool first;           // increments hold nothing yet
+  bool last;            // restore det B = (V/V₁)² at the end
+  bool evaluate_only;   // k ← f, y untouched (diagnostics)
+  double aspect_limit;  // of the longest half-axis to the others after the last stage
   ShapeIntegrator shape_integrator;
   std::size_t begin, end;
-  std::size_t broken;  // out: parcels whose shape lost positive definiteness and was reset
+  std::size_t broken;  // out: parcels whose shape went beyond that and was blunted
 };
 
 /// The same stage with the flow given at the parcels instead of on the mesh: element p − begin of

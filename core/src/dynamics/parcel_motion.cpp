@@ -11,11 +11,13 @@ constexpr std::size_t read_ahead = 8;
 
 template <int D>
 ParcelMotion<D>::ParcelMotion(const mesh::Grid<D>& grid, const LowStorageScheme& scheme,
-                              ShapeIntegrator shape, ReferenceProfile reference)
+                              ShapeIntegrator shape, ReferenceProfile reference,
+                              double aspect_limit)
     : grid_(grid),
       scheme_(scheme),
       shape_(shape),
       reference_(std::move(reference)),
+      aspect_limit_(aspect_limit),
       deposit_(grid),
       deposited_(grid.nodes() * mesh::DepositRecord<D>::width),
       flow_(grid.nodes() * mesh::FlowRecord<D>::width),
@@ -99,6 +101,7 @@ StageJob<D> ParcelMotion<D>::stage_job(parcels::Store& store, std::size_t s, dou
   whole.first = s == 0;
   whole.last = s + 1 == scheme_.stages();
   whole.evaluate_only = evaluate_only;
+  whole.aspect_limit = aspect_limit_;
   whole.shape_integrator = shape_;
   return whole;
 }

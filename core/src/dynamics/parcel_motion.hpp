@@ -68,7 +68,7 @@ class ParcelMotion {
   virtual const double* deposited() = 0;
   const double* flow() const { return flow_.data(); }
   std::size_t empty_nodes() const { return empty_nodes_; }
-  /// Shapes that lost positive definiteness and were reset to spheres since the start.
+  /// Shapes that a step made longer than the limit, and blunted, since the start.
   std::size_t broken_shapes() const { return broken_shapes_; }
   const ReferenceProfile& reference() const { return reference_; }
   parcels::Deposit<D>& deposit() { return deposit_; }
@@ -78,7 +78,7 @@ class ParcelMotion {
 
  protected:
   ParcelMotion(const mesh::Grid<D>& grid, const LowStorageScheme& scheme, ShapeIntegrator shape,
-               ReferenceProfile reference);
+               ReferenceProfile reference, double aspect_limit);
 
   void reserve(std::size_t parcels);
   /// Deposits volume, vorticity and the buoyancy's deviation from the reference.
@@ -93,6 +93,7 @@ class ParcelMotion {
   LowStorageScheme scheme_;
   ShapeIntegrator shape_;
   ReferenceProfile reference_;
+  double aspect_limit_;  // a parcel that a step makes longer is blunted to this
   parcels::Deposit<D> deposit_;
   mesh::FlowSummary summary_;
 

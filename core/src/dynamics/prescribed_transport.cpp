@@ -80,8 +80,8 @@ template <int D>
 PrescribedTransport<D>::PrescribedTransport(const mesh::Grid<D>& grid,
                                             std::unique_ptr<VelocityField<D>> velocity,
                                             const LowStorageScheme& scheme, ShapeIntegrator shape,
-                                            ReferenceProfile reference)
-    : ParcelMotion<D>(grid, scheme, shape, std::move(reference)),
+                                            ReferenceProfile reference, double aspect_limit)
+    : ParcelMotion<D>(grid, scheme, shape, std::move(reference), aspect_limit),
       velocity_(std::move(velocity)),
       column_summary_(grid.columns()) {
   std::fill_n(flow_.data(), flow_.size(), 0.0);

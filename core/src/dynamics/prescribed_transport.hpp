@@ -14,7 +14,7 @@ class PrescribedTransport final : public ParcelMotion<D> {
  public:
   PrescribedTransport(const mesh::Grid<D>& grid, std::unique_ptr<VelocityField<D>> velocity,
                       const LowStorageScheme& scheme, ShapeIntegrator shape,
-                      ReferenceProfile reference);
+                      ReferenceProfile reference, double aspect_limit = 100);
 
   /// Runs the closures and samples the flow at the nodes of the mesh, for limits of the step and
   /// for output. `store`, buoyancy and `tile_begin` have to stay valid while deposited() may be

@@ -46,8 +46,8 @@ NetVorticity<D> mean_vorticity(const parcels::Store& store, double domain_volume
 template <int D>
 Transport<D>::Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
                         const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
-                        ReferenceProfile reference)
-    : ParcelMotion<D>(grid, scheme, shape, std::move(reference)),
+                        ReferenceProfile reference, double aspect_limit)
+    : ParcelMotion<D>(grid, scheme, shape, std::move(reference), aspect_limit),
       coriolis_(coriolis),
       solver_(grid, flow),
       sharpen_deposited_(grid, mesh::DepositRecord<D>::width, mesh::DepositRecord<D>::vorticity,

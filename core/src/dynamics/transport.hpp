@@ -13,10 +13,11 @@ namespace pileus::dynamics {
 template <int D>
 class Transport final : public ParcelMotion<D> {
  public:
-  /// `sharpening` is the strength β of mesh::Sharpening, 0 for none.
+  /// `sharpening` is the strength β of mesh::Sharpening, 0 for none. A parcel that a step makes
+  /// longer than `aspect_limit` times its width is blunted to that.
   Transport(const mesh::Grid<D>& grid, const mesh::FlowOptions& flow, double coriolis,
             const LowStorageScheme& scheme, ShapeIntegrator shape, double sharpening,
-            ReferenceProfile reference);
+            ReferenceProfile reference, double aspect_limit = 100);
 
   /// Deposits the state and solves for its flow.
   const mesh::FlowSummary& evaluate(parcels::Store& store, BuoyancySource& source,

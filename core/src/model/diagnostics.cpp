@@ -78,8 +78,10 @@ int Diagnostics::index(const std::string& name) const {
 }
 
 Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation,
-                         const coupling::SurfaceFields& surface)
+                         const coupling::SurfaceFields& surface,
+                         const std::vector<std::string>& changed)
     : potential_energy_(scene),
+      soundness_(simulation, changed),
       surface_(surface),
       cloud_threshold_(scene.diagnostics.cloud_threshold) {
   const parcels::Store& store = simulation.store();
@@ -102,6 +104,8 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
   volume_error_rms_ = add("volume_error_rms", "1", "r.m.s. error of the gridded volume fraction");
   volume_error_max_ = add("volume_error_max", "1", "largest error of the gridded volume fraction");
   parcels_ = add("parcels", "1", "number of parcels");
+  for (const auto& [name, units, text] : Soundness::outputs())
+    soundness_entries_.push_back(add(name, units, text));
   for (int d = 0; d < simulation.dimension() - 1; ++d)
     mean_wind_.push_back(add(d == 0 ? "mean_wind_x" : "mean_wind_y", "m s-1", "domain-mean wind"));
   for (int c = 0; c < store.vorticity_components(); ++c)
@@ -214,6 +218,8 @@ void Diagnostics::observe_state(Simulation& simulation) {
   observe_scalars(simulation);
   observe_cloud(simulation);
   observe_surface();
+  const std::vector<double> soundness = soundness_.measure(simulation);
+  for (std::size_t k = 0; k < soundness.size(); ++k) set(soundness_entries_[k], soundness[k]);
   set(grid_kinetic_, simulation.grid_kinetic_energy());
   const parcels::VolumeError error = simulation.volume_error();
   set(volume_error_rms_, error.rms);

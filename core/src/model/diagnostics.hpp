@@ -10,6 +10,7 @@
 #include "model/histogram.hpp"
 #include "model/potential_energy.hpp"
 #include "model/simulation.hpp"
+#include "model/soundness.hpp"
 #include "model/water_path.hpp"
 #include "scene/scene.hpp"
 
@@ -25,9 +26,10 @@ struct DiagnosticInfo {
 /// volume; sums run in an order independent of the number of threads.
 class Diagnostics {
  public:
-  /// `surface`: of the run's operators; it has to outlive this.
+  /// `surface`: of the run's operators; it has to outlive this. `changed` names the quantities that
+  /// operators may change.
   Diagnostics(const scene::Scene& scene, const Simulation& simulation,
-              const coupling::SurfaceFields& surface);
+              const coupling::SurfaceFields& surface, const std::vector<std::string>& changed);
 
   const std::vector<DiagnosticInfo>& list() const { return list_; }
   int index(const std::string& name) const;  // −1: there is none of that name
@@ -38,6 +40,10 @@ class Diagnostics {
   void observe_velocity(Simulation& simulation);
   /// One value per entry of list(), of the state last observed.
   const std::vector<double>& values() const { return values_; }
+
+  /// What later states are compared with, for a run that continues.
+  void save(output::NamedData& data) const { soundness_.save(data); }
+  void restore(const output::NamedData& data) { soundness_.restore(data); }
 
  private:
   int add(std::string name, std::string units, std::string long_name, bool conserved = false);
@@ -68,6 +74,8 @@ class Diagnostics {
   std::vector<DiagnosticInfo> list_;
   std::vector<double> values_;
   PotentialEnergy potential_energy_;
+  Soundness soundness_;
+  std::vector<int> soundness_entries_;
   std::vector<ExactComparison> exact_;
   std::vector<std::vector<int>> exact_entries_;
   std::vector<ModeEntries> modes_;

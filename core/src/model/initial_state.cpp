@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "model/sixth_order_difference.hpp"
+#include "parcels/lattice.hpp"
 #include "scene/field_sampler.hpp"
 #include "scene/problems.hpp"
 
@@ -90,6 +91,22 @@ void set_vorticity_from_velocity(const scene::Scene& scene, const mesh::Grid<D>&
 }  // namespace
 
 template <int D>
+void thin_parcels(const scene::Scene& scene, parcels::Store& store) {
+  const scene::FieldDescription& where = scene.parcels.where;
+  const scene::FieldSampler sampler(where, scene);
+  if (sampler.uniform_value()) return;
+  std::vector<double> indicator(store.size());
+  const Positions<D> at = positions_of<D>(store);
+  sampler.sample(store.size(), at.x(), at.y(), at.z(), indicator.data());
+  if (parcels::keep_positive(store, indicator) > 0) return;
+  throw Error(
+      ExitCode::usage,
+      fmt::format("{}:{}:{}: error: 'parcels.where' is positive at none of the {} points of "
+                  "the lattice, so there would be no parcel.",
+                  where.where.file, where.where.line, where.where.column, store.size()));
+}
+
+template <int D>
 void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, parcels::Store& store,
                         dynamics::MeanWind& wind) {
   const Positions<D> at = positions_of<D>(store);
@@ -136,6 +153,8 @@ dynamics::ReferenceProfile profile_over_height(const scene::FieldDescription& fi
   return dynamics::ReferenceProfile(bottom, top, points, [&](double) { return value[next++]; });
 }
 
+template void thin_parcels<2>(const scene::Scene&, parcels::Store&);
+template void thin_parcels<3>(const scene::Scene&, parcels::Store&);
 template void fill_initial_state<2>(const scene::Scene&, const mesh::Grid<2>&, parcels::Store&,
                                     dynamics::MeanWind&);
 template void fill_initial_state<3>(const scene::Scene&, const mesh::Grid<3>&, parcels::Store&,

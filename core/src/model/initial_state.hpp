@@ -8,6 +8,11 @@
 
 namespace pileus::model {
 
+/// Takes away the parcels where the scene wants none, see scene::ParcelControl::where. Throws Error
+/// (usage) when none is left.
+template <int D>
+void thin_parcels(const scene::Scene& scene, parcels::Store& store);
+
 /// Gives the placed parcels of the store the scene's fields at their centres: exactly, not through
 /// the mesh. A velocity becomes vorticity by differences of the sixth order (step Δ/64: truncation
 /// below 1e-10 of a field that the mesh resolves) and, together with `mean_wind`, gives the

@@ -54,7 +54,8 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
       physics_(sequence_, planner::Tripwires(plan_)),
       simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
   sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
-  diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface());
+  diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface(),
+                                               sequence_.changed_quantities());
   check_expectations(scene.expect, diagnostics_->list());
   record_ = std::make_unique<Record>(diagnostics_->list());
 }
@@ -93,6 +94,7 @@ bool Loop::resume() {
   sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt});
   sequence_.restore_books(checkpoint.data.arrays.at("books"));
   record_->restore(checkpoint.data, checkpoint.time);
+  diagnostics_->restore(checkpoint.data);
   restore_totals(checkpoint.data);
   // The record of the checkpoint's own time is written again: a checkpoint precedes its outputs.
   open_streams(output::Start::resume_at(std::nextafter(checkpoint.time, -1.0)));
@@ -109,11 +111,10 @@ void Loop::run() {
   started_ = last_checkpoint_ = last_status_ = Clock::now();
   progress_.begin(scene_.title.empty() ? scene_.name : scene_.title, simulation_->time(),
                   scene_.time.end);
-  const double core_before = core_seconds();
-  const double wall_before = totals_.wall;
+  core_started_ = core_seconds();
   const auto settle_clocks = [&] {
-    totals_.wall = wall_before + seconds_since(started_);
-    totals_.core += core_seconds() - core_before;
+    totals_.wall += seconds_since(started_);
+    totals_.core += core_seconds() - core_started_;
   };
   try {
     advance();
@@ -244,6 +245,7 @@ void Loop::checkpoint() {
       simulation_->time(), simulation_->step(), simulation_->last_dt(), {}};
   simulation_->save(checkpoint.data);
   record_->save(checkpoint.data);
+  diagnostics_->save(checkpoint.data);
   save_totals(checkpoint.data);
   checkpoint.data.arrays["books"] = sequence_.books();
   checkpoint.data.arrays.merge(sequence_.surface().named_values());
@@ -261,7 +263,16 @@ void Loop::checkpoint() {
 void Loop::save_totals(output::NamedData& data) const {
   data.counters["totals"] = {totals_.parcels_initial, totals_.splits, totals_.merges};
   data.arrays["totals"] = {totals_.parcel_steps, totals_.loop_core,
-                           totals_.wall + seconds_since(started_), totals_.core};
+                           totals_.wall + seconds_since(started_),
+                           totals_.core + core_seconds() - core_started_};
+  std::vector<double>& phases = data.arrays["phase_seconds"];
+  std::vector<std::uint64_t>& calls = data.counters["phase_calls"];
+  phases.clear();
+  calls.clear();
+  for (const PhaseTimes::Entry& entry : simulation_->times()) {
+    phases.push_back(entry.seconds);
+    calls.push_back(entry.calls);
+  }
   for (const auto& budget : initial_budgets_)
     data.arrays["initial_budget/" + budget.budget] = {budget.total};
 }
@@ -276,10 +287,26 @@ void Loop::restore_totals(const output::NamedData& data) {
   totals_.loop_core = numbers.at(1);
   totals_.wall = numbers.at(2);
   totals_.core = numbers.at(3);
+  restore_phases(data);
   constexpr std::string_view prefix = "initial_budget/";
   for (const auto& [name, value] : data.arrays)
     if (name.starts_with(prefix))
       initial_budgets_.push_back({name.substr(prefix.size()), value.at(0)});
+}
+
+/// Of a program with other phases nothing is taken over.
+void Loop::restore_phases(const output::NamedData& data) {
+  const auto& seconds = data.arrays.at("phase_seconds");
+  const auto& calls = data.counters.at("phase_calls");
+  PhaseTimes& times = simulation_->times();
+  if (seconds.size() != calls.size() ||
+      seconds.size() != static_cast<std::size_t>(times.end() - times.begin()))
+    return;
+  std::size_t phase = 0;
+  for (PhaseTimes::Entry& entry : times) {
+    entry = {seconds[phase], calls[phase]};
+    ++phase;
+  }
 }
 
 void Loop::report_progress(const dynamics::TimeStep& allowed) {

@@ -54,6 +54,7 @@ class Loop {
   void checkpoint_if_due();
   void save_totals(output::NamedData& data) const;
   void restore_totals(const output::NamedData& data);
+  void restore_phases(const output::NamedData& data);
   void report_progress(const dynamics::TimeStep& allowed);
   void report_activations();
   double share_of_run(double seconds) const;
@@ -75,6 +76,7 @@ class Loop {
   std::string message_;
   std::vector<coupling::BudgetTotal> initial_budgets_;
   std::chrono::steady_clock::time_point started_, last_checkpoint_, last_status_;
+  double core_started_ = 0;  // s, processor time when this session began
   double seconds_per_step_ = 0;
   std::uint64_t steps_since_checkpoint_ = 0;
   std::size_t activations_reported_ = 0;

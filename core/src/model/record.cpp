@@ -27,9 +27,10 @@ double Record::at(std::size_t diagnostic, double time) const {
 }
 
 const std::vector<std::string>& known_statistics() {
-  static const std::vector<std::string> words = {
-      "initial",          "final",         "min", "max", "mean", "relative_change", "growth_rate",
-      "first_time_above", "mean_deviation"};
+  static const std::vector<std::string> words = {"initial",       "final",       "min",
+                                                 "max",           "mean",        "relative_change",
+                                                 "relative_rise", "growth_rate", "first_time_above",
+                                                 "mean_deviation"};
   return words;
 }
 
@@ -91,6 +92,7 @@ std::optional<double> Record::statistic(std::size_t diagnostic, const std::strin
   if (name == "mean") return mean_of({begin, stop});
   if (name == "mean_deviation") return mean_deviation({begin, stop});
   if (name == "relative_change") return (end - *begin) / std::abs(*begin);
+  if (name == "relative_rise") return (*std::max_element(begin, stop) - *begin) / std::abs(*begin);
   if (name == "growth_rate") {
     const auto at = static_cast<std::size_t>(skipped), n = static_cast<std::size_t>(count);
     return growth_rate(std::span(times_).subspan(at, n), std::span(values).subspan(at, n));

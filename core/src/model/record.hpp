@@ -26,11 +26,11 @@ class Record {
   /// Linear between records, constant beyond them.
   double at(std::size_t diagnostic, double time) const;
   /// initial, final, min, max, mean (over the records), relative_change ((final −
-  /// initial)/|initial|), first_time_above (s, of the first record above zero); nothing for an
-  /// unknown word or when there is no such record; growth_rate: slope of the straight line through
-  /// the logarithms of the magnitudes (s⁻¹), nothing for fewer than three records or a zero among
-  /// them; mean_deviation: the mean of |1 − v/⟨v⟩|. `time` replaces the end of the run, `from` its
-  /// beginning.
+  /// initial)/|initial|), relative_rise ((max − initial)/|initial|), first_time_above (s, of the
+  /// first record above zero); nothing for an unknown word or when there is no such record;
+  /// growth_rate: slope of the straight line through the logarithms of the magnitudes (s⁻¹),
+  /// nothing for fewer than three records or a zero among them; mean_deviation: the mean of
+  /// |1 − v/⟨v⟩|. `time` replaces the end of the run, `from` its beginning.
   std::optional<double> statistic(std::size_t diagnostic, const std::string& name,
                                   std::optional<double> time,
                                   std::optional<double> from = {}) const;

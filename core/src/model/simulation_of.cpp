@@ -71,6 +71,17 @@ dynamics::ShapeIntegrator shape_integrator_of(const scene::Scene& scene) {
              : dynamics::ShapeIntegrator::runge_kutta;
 }
 
+/// A parcel that one step stretches to this many times the aspect ratio at which it splits has
+/// outrun splitting, which halves it once a step: its thinness is not resolved by anything.
+constexpr double needle_factor = 25;
+
+/// The largest ratio of a cell's edges: parcels of the cell's own shape are that long.
+template <int D>
+double edge_ratio(const mesh::Grid<D>& grid) {
+  const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
+  return *most / *least;
+}
+
 }  // namespace
 
 template <int D>
@@ -120,20 +131,26 @@ std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::induced_transport() 
       grid_, flow, scene_.background.coriolis[2], scheme_of(scene_), shape_integrator_of(scene_),
       0.25 * numerics.window_compensation *
           mesh::lattice_mean_product(parcels::parcels_per_direction(scene_.parcels.per_cell, D)),
-      reference_);
+      reference_, aspect_limit());
 }
 
 template <int D>
 std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::prescribed_transport() const {
   auto velocity = std::make_unique<PrescribedVelocity<D>>(scene_, grid_);
   return std::make_unique<dynamics::PrescribedTransport<D>>(
-      grid_, std::move(velocity), scheme_of(scene_), shape_integrator_of(scene_), reference_);
+      grid_, std::move(velocity), scheme_of(scene_), shape_integrator_of(scene_), reference_,
+      aspect_limit());
+}
+
+template <int D>
+double SimulationOf<D>::aspect_limit() const {
+  return needle_factor * scene_.parcels.max_aspect_ratio * edge_ratio(grid_);
 }
 
 template <int D>
 void SimulationOf<D>::initialise(const scene::Scene& scene) {
   build_transport({false, false});
-  place_parcels(scene.parcels);
+  place_parcels(scene);
   fill_initial_state(scene, grid_, *store_, wind_);
   build_transport(walls_without_vorticity());
   if (scene_.flow.prescribed) warn_of_divergence();
@@ -161,9 +178,12 @@ void SimulationOf<D>::warn_of_divergence() const {
 /// Scattered parcels are brought to fill the cells evenly before they get their fields: later, the
 /// volume correction would carry values away from where they belong, and stir a fluid at rest.
 template <int D>
-void SimulationOf<D>::place_parcels(const scene::ParcelControl& control) {
+void SimulationOf<D>::place_parcels(const scene::Scene& scene) {
   constexpr int settling_rounds = 10;  // each of which cuts the volume error threefold or more
-  parcels::fill_lattice<D>(*store_, grid_, control.per_cell, control.jitter, control.seed);
+  const scene::ParcelControl& control = scene.parcels;
+  parcels::fill_lattice<D>(*store_, grid_,
+                           {control.per_cell, control.offset, control.jitter, control.seed});
+  thin_parcels<D>(scene, *store_);
   const auto order = [&] {
     upkeep_.reorder(*store_, transport_->offsets(), times_);
     tile_begin_ = upkeep_.tile_begin();
@@ -215,6 +235,7 @@ void SimulationOf<D>::save(output::NamedData& data) const {
   data.arrays["domain"] = corners();
   data.arrays["mean_wind"] = {wind_.velocity[0], wind_.velocity[1]};
   data.counters["zero_wall_vorticity"] = {zero_wall_vorticity_[0], zero_wall_vorticity_[1]};
+  data.counters["broken_shapes"] = {broken_shapes()};
   data.counters["tile_begin"].assign(tile_begin_.begin(), tile_begin_.end());
 }
 
@@ -229,6 +250,7 @@ void SimulationOf<D>::restore(const output::NamedData& data) {
     throw Error(ExitCode::usage,
                 "The checkpoint belongs to another domain or mesh than the scene describes.");
   tile_begin_.assign(tiles.begin(), tiles.end());
+  broken_before_ = data.counters.at("broken_shapes").at(0);
   build_transport({zero.at(0) != 0, zero.at(1) != 0});
 }
 

@@ -44,7 +44,9 @@ class SimulationOf final : public Simulation {
   parcels::VolumeError volume_error() const override;
   double grid_kinetic_energy() const override;
   std::size_t allocated_bytes() const override;
-  std::size_t broken_shapes() const override { return transport_->broken_shapes(); }
+  std::size_t broken_shapes() const override {
+    return broken_before_ + transport_->broken_shapes();
+  }
 
  private:
   /// Remembers the buoyancy the transport last saw, for diagnostics of the evaluated state.
@@ -61,8 +63,9 @@ class SimulationOf final : public Simulation {
   std::unique_ptr<dynamics::ParcelMotion<D>> induced_transport() const;
   std::unique_ptr<dynamics::ParcelMotion<D>> prescribed_transport() const;
   void warn_of_divergence() const;
+  double aspect_limit() const;
   std::array<bool, 2> walls_without_vorticity() const;
-  void place_parcels(const scene::ParcelControl& control);
+  void place_parcels(const scene::Scene& scene);
   void require_finite() const;
   std::vector<double> corners() const;
 
@@ -78,6 +81,7 @@ class SimulationOf final : public Simulation {
   parcels::VolumeCorrection<D> correction_;
   std::vector<std::size_t> tile_begin_;
   std::unique_ptr<MeshAccessOf<D>> mesh_access_;
+  std::size_t broken_before_ = 0;  // shapes, until the run was last interrupted
   mesh::FlowSummary flow_summary_;
   dynamics::TimeStep allowed_{0, ""};
 };

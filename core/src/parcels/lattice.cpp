@@ -5,6 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "parcels/identity.hpp"
+#include "parcels/walls.hpp"
 
 namespace pileus::parcels {
 namespace {
@@ -25,8 +26,8 @@ int parcels_per_direction(int per_cell, int dimension) {
 }
 
 template <int D>
-void fill_lattice(Store& store, const mesh::Grid<D>& grid, int per_cell, double jitter,
-                  std::uint64_t seed) {
+void fill_lattice(Store& store, const mesh::Grid<D>& grid, const LatticeControl& control) {
+  const int per_cell = control.per_cell;
   const auto m = static_cast<std::size_t>(parcels_per_direction(per_cell, D));
   std::size_t count[3] = {1, 1, 1};  // lattice points: x, y, z
   for (int d = 0; d < D - 1; ++d) count[d] = m * static_cast<std::size_t>(grid.cells[d]);
@@ -51,9 +52,9 @@ void fill_lattice(Store& store, const mesh::Grid<D>& grid, int per_cell, double 
       for (int d = 0; d < D; ++d) {
         const std::size_t i = d == D - 1 ? index[2] : index[d];
         const double spacing = grid.spacing[d] / static_cast<double>(m);
-        double x = grid.lower[d] + spacing * (static_cast<double>(i) + 0.5);
-        if (jitter > 0) x += jitter * spacing * symmetric_uniform(seed, uid, unsigned(d));
-        if (d == D - 1) x = std::clamp(x, grid.bottom(), grid.top());
+        double x = grid.lower[d] + spacing * (static_cast<double>(i) + control.offset);
+        if (control.jitter > 0)
+          x += control.jitter * spacing * symmetric_uniform(control.seed, uid, unsigned(d));
         store.position(d)[p] = x;
         for (int e = d; e < D; ++e, ++c)
           store.shape(c)[p] =
@@ -62,11 +63,33 @@ void fill_lattice(Store& store, const mesh::Grid<D>& grid, int per_cell, double 
       for (int v = 0; v < store.vorticity_components(); ++v) store.vorticity(v)[p] = 0;
       for (std::size_t s = 0; s < store.scalars().size(); ++s)
         store.scalar(static_cast<int>(s))[p] = 0;
+      hold_inside<D>(store, grid, p);
     }
   });
 }
 
-template void fill_lattice<2>(Store&, const mesh::Grid<2>&, int, double, std::uint64_t);
-template void fill_lattice<3>(Store&, const mesh::Grid<3>&, int, double, std::uint64_t);
+std::size_t keep_positive(Store& store, const std::vector<double>& indicator) {
+  std::vector<std::uint32_t> kept;
+  double kept_volume = 0, volume = 0;
+  for (std::size_t p = 0; p < store.size(); ++p) {
+    volume += store.volume()[p];
+    if (!(indicator[p] > 0)) continue;
+    kept_volume += store.volume()[p];
+    kept.push_back(static_cast<std::uint32_t>(p));
+  }
+  if (kept.empty() || kept.size() == store.size()) return kept.size();
+  AlignedArray<double> spare;
+  store.gather(kept, spare);
+  const double growth = volume / kept_volume;
+  const double shape_growth = std::pow(growth, 2.0 / store.dimension());
+  for (std::size_t p = 0; p < store.size(); ++p) {
+    store.volume()[p] *= growth;
+    for (int c = 0; c < store.shape_components(); ++c) store.shape(c)[p] *= shape_growth;
+  }
+  return kept.size();
+}
+
+template void fill_lattice<2>(Store&, const mesh::Grid<2>&, const LatticeControl&);
+template void fill_lattice<3>(Store&, const mesh::Grid<3>&, const LatticeControl&);
 
 }  // namespace pileus::parcels

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "base/parallel.hpp"
 #include "parcels/ellipsoid.hpp"
+#include "parcels/walls.hpp"
 
 namespace pileus::parcels {
 namespace {
 
-constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 constexpr double three_over_four_pi = 0.23873241463784300365;
 constexpr double one_over_pi = 0.31830988618379067154;
-
-/// Shortest way around a periodic direction.
-double minimum_image(double difference, double extent) {
-  return difference - extent * std::round(difference / extent);
-}
 
 template <int D>
 void separation(const mesh::Grid<D>& grid, const Store& store, std::uint32_t from, std::uint32_t to,
@@ -59,7 +53,7 @@ std::uint64_t identity_of_merged(const Store& store, const Source* begin, const 
 
 template <int D>
 Merge<D>::Merge(const mesh::Grid<D>& grid, double smallest_volume)
-    : grid_(grid), smallest_volume_(smallest_volume) {}
+    : grid_(grid), smallest_volume_(smallest_volume), nearest_(grid) {}
 
 template <int D>
 MergeCounts Merge<D>::run(Store& store, const CellOrder<D>& order) {
@@ -112,58 +106,16 @@ void Merge<D>::find_links(const Store& store, const CellOrder<D>& order) {
   if (small_.empty() || store.size() < 2) return;
   std::sort(small_.begin(), small_.end(),
             [uid = store.uid()](std::uint32_t a, std::uint32_t b) { return uid[a] < uid[b]; });
+  nearest_.prepare(store, order);
   links_.resize(small_.size());
   parallel_chunks(
       small_.size(),
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m)
-          links_[m] = {small_[m], nearest(store, order, small_[m])};
+        for (std::size_t m = begin; m < end; ++m) links_[m] = {small_[m], nearest_.of(small_[m])};
       },
       256);
   // A parcel whose position is not a number is at no distance from anything.
-  std::erase_if(links_, [](const Link& link) { return link.to == nobody; });
-}
-
-/// Nearest other parcel by distance of centres among the cells around the nearest node, and around
-/// ever more of them while those are empty. Equal distances go to the smaller identity.
-template <int D>
-std::uint32_t Merge<D>::nearest(const Store& store, const CellOrder<D>& order,
-                                std::uint32_t p) const {
-  int nearest_node[D];
-  for (int a = 0; a < D; ++a) {
-    const double xi = (store.position(a)[p] - grid_.lower[a]) * grid_.inverse_spacing[a];
-    // Nowhere: not a number, or so far out that distances mean nothing. Searching would take long.
-    if (!(std::abs(xi) < 1e9)) return nobody;
-    nearest_node[a] = static_cast<int>(std::lround(xi));
-  }
-  const int ci = nearest_node[0], cj = D == 3 ? nearest_node[1] : 0, ck = nearest_node[D - 1];
-  const int nx = grid_.nx(), ny = grid_.ny(), nz = grid_.nz();
-  const std::uint64_t* uid = store.uid();
-  std::uint32_t best = nobody;
-  double best_distance = std::numeric_limits<double>::infinity();
-  const auto consider_cell = [&](int i, int j, int k) {
-    const std::size_t key = order.key((i % nx + nx) % nx, (j % ny + ny) % ny, k);
-    for (std::uint32_t s = order.first(key); s < order.first(key + 1); ++s) {
-      const std::uint32_t q = order.order()[s];
-      if (q == p) continue;
-      double d[D];
-      separation<D>(grid_, store, p, q, d);
-      double distance = 0;
-      for (int a = 0; a < D; ++a) distance += d[a] * d[a];
-      if (distance < best_distance ||
-          (distance == best_distance && best != nobody && uid[q] < uid[best])) {
-        best_distance = distance;
-        best = q;
-      }
-    }
-  };
-  const int widest = std::max({nx, ny, nz}) + 1;
-  for (int radius = 1; best == nobody && radius <= widest; ++radius)
-    for (int j = D == 3 ? cj - radius : 0; j < (D == 3 ? cj + radius : 1); ++j)
-      for (int i = ci - radius; i < ci + radius; ++i)
-        for (int k = std::max(ck - radius, 0); k < std::min(ck + radius, nz); ++k)
-          consider_cell(i, j, k);
-  return best;
+  std::erase_if(links_, [](const Link& link) { return link.to == NearestParcel<D>::nobody; });
 }
 
 template <int D>
@@ -215,10 +167,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
       for (const Source* s = begin; s != end; ++s) value[r] += value[s->source];
   }
   for (int a = 0; a < D; ++a) store.position(a)[r] += centroid[a];
-  for (int a = 0; a < D - 1; ++a) {
-    double& x = store.position(a)[r];
-    x -= grid_.extent[a] * std::floor((x - grid_.lower[a]) / grid_.extent[a]);
-  }
+  hold_inside<D>(store, grid_, r);  // across the seam, or rounded beyond a wall
   for (int c = 0; c < shape_components; ++c) store.shape(c)[r] = scale * shape[c];
   store.uid()[r] = identity_of_merged(store, begin, end);
   store.volume()[r] = total;

@@ -6,6 +6,7 @@
 
 #include "parcels/cell_order.hpp"
 #include "parcels/merge_graph.hpp"
+#include "parcels/nearest.hpp"
 #include "parcels/store.hpp"
 
 namespace pileus::parcels {
@@ -40,11 +41,11 @@ class Merge {
     std::uint32_t receiver, source;
   };
   void find_links(const Store& store, const CellOrder<D>& order);
-  std::uint32_t nearest(const Store& store, const CellOrder<D>& order, std::uint32_t p) const;
   void merge_cluster(Store& store, const Source* begin, const Source* end) const;
 
   mesh::Grid<D> grid_;
   double smallest_volume_;
+  NearestParcel<D> nearest_;
   MergeGraph graph_;
   std::vector<std::uint32_t> small_;
   std::vector<Link> links_;

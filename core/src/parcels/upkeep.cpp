@@ -1,5 +1,7 @@
 #include "parcels/upkeep.hpp"
 
+#include <algorithm>
+
 #include "base/parallel.hpp"
 #include "parcels/kernels.hpp"
 #include "parcels/margin.hpp"
@@ -13,6 +15,7 @@ Upkeep<D>::Upkeep(const mesh::Grid<D>& grid, const Tiling<D>& tiling, double sma
       tiling_(tiling),
       order_(grid, tiling),
       merge_(grid, smallest_volume),
+      metric_(grid),
       criterion_(criterion),
       tile_begin_(tiling.tiles().size() + 1, 0) {}
 
@@ -43,7 +46,7 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
         pairs_.size(),
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i)
-            split_pair<D>(store, grid_, pairs_[i], pairs_[i] + 1, step);
+            split_pair<D>(store, grid_, metric_, pairs_[i], pairs_[i] + 1, step);
         },
         256);
     counts.splits = pairs_.size();
@@ -65,6 +68,7 @@ template <int D>
 void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
   const std::size_t count = store.size();
   resize_with_margin(splits_, count);
+  if (!metric_.cubic) return mark_splits_in_flat_cells(store);
   if (scratch.capacity() < count + 8) scratch.resize(count);
   double* length = scratch.scratch(0);
   double* ratio = scratch.scratch(1);
@@ -76,6 +80,33 @@ void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
     measure(shape, length, ratio, begin, end);
     for (std::size_t p = begin; p < end; ++p)
       splits_[p] = criterion_.splits(length[p], ratio[p], volume[p]);
+  });
+}
+
+/// The same with shapes mapped to the metric of the cell, a block of them at a time.
+template <int D>
+void Upkeep<D>::mark_splits_in_flat_cells(const Store& store) {
+  constexpr int components = D == 3 ? 6 : 3;
+  constexpr std::size_t block = 128, read_ahead = 8;
+  const auto measure = D == 3 ? kernels().axis_ratios_3d : kernels().axis_ratios_2d;
+  parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
+    alignas(64) double mapped[components][block + read_ahead];
+    alignas(64) double length[block + read_ahead], ratio[block + read_ahead];
+    const double* shape[components];
+    for (int c = 0; c < components; ++c) shape[c] = mapped[c];
+    for (std::size_t first = begin; first < end; first += block) {
+      const std::size_t count = std::min(block, end - first);
+      for (int i = 0, c = 0; i < D; ++i)
+        for (int j = i; j < D; ++j, ++c) {
+          const double stretch = metric_.stretch[std::size_t(i)] * metric_.stretch[std::size_t(j)];
+          for (std::size_t p = 0; p < count; ++p)
+            mapped[c][p] = stretch * store.shape(c)[first + p];
+          std::fill_n(mapped[c] + count, read_ahead, mapped[c][count - 1]);
+        }
+      measure(shape, length, ratio, 0, count);
+      for (std::size_t p = 0; p < count; ++p)
+        splits_[first + p] = criterion_.splits(length[p], ratio[p], store.volume()[first + p]);
+    }
   });
 }
 

@@ -37,12 +37,14 @@ class Upkeep {
 
  private:
   void mark_splits(const Store& store, SupportOffsets<D>& scratch);
+  void mark_splits_in_flat_cells(const Store& store);
   void list_survivors();
 
   mesh::Grid<D> grid_;
   const Tiling<D>& tiling_;
   CellOrder<D> order_;
   Merge<D> merge_;
+  CellMetric<D> metric_;
   SplitCriterion<D> criterion_;
   std::vector<std::uint8_t> splits_;   // per parcel before reordering
   std::vector<std::uint32_t> source_;  // old index of every new parcel

@@ -11,8 +11,15 @@
 namespace pileus::scene {
 namespace {
 
-void check_parcels_per_cell(Reader& reader, const Node& node, void* object) {
+void check_parcels(Reader& reader, const Node& node, void* object) {
   const auto& parcels = *static_cast<ParcelControl*>(object);
+  const Entry* where = node.find("where");
+  if (where != nullptr && parcels.where.form == FieldDescription::Form::constant &&
+      !(parcels.where.constant > 0))
+    reader.problem(
+        where->value,
+        "'where' is positive nowhere, so there would be no parcel; it is a formula of x, "
+        "y, z that is positive where parcels start");
   const int dimension = reader.scene().domain.dimension;
   const int side = static_cast<int>(std::lround(std::pow(parcels.per_cell, 1.0 / dimension)));
   const auto power = [&](int m) { return dimension == 3 ? m * m * m : m * m; };
@@ -251,6 +258,16 @@ const Table& parcels_table() {
                    .at_least(1)
                    .at_most(4096)
                    .otherwise("8; 9 in two dimensions"),
+               value("offset", &ParcelControl::offset, "1",
+                     "Place of the lattice in the cells: distance of its first point from the "
+                     "cell's lower corner in lattice spacings. 0 and 1 put parcels on walls, faces "
+                     "and corners.")
+                   .at_least(0)
+                   .at_most(1),
+               value("where", &ParcelControl::where, "1",
+                     "Parcels start only where this formula of x, y, z is positive; there they are "
+                     "larger, so that together they have the domain's volume.")
+                   .otherwise("everywhere"),
                value("jitter", &ParcelControl::jitter, "1",
                      "Random displacement at the start, as a fraction of the lattice spacing.")
                    .at_least(0)
@@ -283,7 +300,7 @@ const Table& parcels_table() {
                      "Largest compression the gradient correction may ask for.")
                    .at_least(0)},
       .other = {},
-      .finish = check_parcels_per_cell,
+      .finish = check_parcels,
       .write_other = {},
       .amend_schema = {}};
   return table;

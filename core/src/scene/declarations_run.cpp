@@ -347,19 +347,23 @@ const Table& output_table() {
 const Table& expectation_table() {
   static const Table table = {
       .path = "expect",
-      .doc = "Bounds that a right run keeps; 'pileus check' judges them.",
+      .doc =
+          "Bounds that a right run keeps; 'pileus check' judges them. An item 'inherited' stands "
+          "for "
+          "those of the scene that this one extends.",
       .keys =
           {value("diagnostic", &Expectation::diagnostic, "1", "Name of a diagnostic.").must(),
            [] {
              Key key = value(
                  "statistic", &Expectation::statistic, "1",
                  "Which number of its series: the value at the start or end, an "
-                 "extremum or mean over the run, final over initial minus one, the rate at "
-                 "which the logarithm of its magnitude grows (s-1, least squares), or the mean of "
-                 "|1 - value/mean|.");
+                 "extremum or mean over the run, final over initial minus one, max over initial "
+                 "minus one, the rate at which the logarithm of its magnitude grows (s-1, least "
+                 "squares), or the mean of |1 - value/mean|.");
              key.type = KeyType::custom;
-             key.choices = {"initial", "final",           "min",         "max",
-                            "mean",    "relative_change", "growth_rate", "mean_deviation"};
+             key.choices = {"initial",       "final",       "min",
+                            "max",           "mean",        "relative_change",
+                            "relative_rise", "growth_rate", "mean_deviation"};
              key.default_doc = "final";
              key.read = [choices = key.choices](Reader& reader, const Entry& entry, void* object) {
                Key words;

@@ -32,6 +32,9 @@ struct Entry {
   Node value;
 };
 
+/// The item of `expect` that stands for the expectations of the scene that is extended.
+inline constexpr const char* inherited_expectations = "inherited";
+
 /// "a mapping", "a list", "'text'" or "nothing": what a message says was found.
 std::string describe(const Node& node);
 
@@ -46,9 +49,10 @@ struct DocumentKind {
 };
 
 /// Reads a YAML file and, when its top level has `extends: other.yaml` (relative to the file), lays
-/// it over that file, key by key; `expect` and every list are replaced as a whole, and entries of
-/// `operators` are matched by their names. Throws pileus::Error: ExitCode::usage for a missing file
-/// (with the names near it) or a folder, ExitCode::file for one that cannot be read.
+/// it over that file, key by key; every list is replaced as a whole, but entries of `operators` are
+/// matched by their names and an item `inherited` of `expect` stands for the other file's. Throws
+/// pileus::Error: ExitCode::usage for a missing file (with the names near it) or a folder,
+/// ExitCode::file for one that cannot be read.
 Node load_document(const std::string& path, Problems& problems, const DocumentKind& kind = {});
 
 /// Lays `over` on `base`: mappings are merged key by key, everything else is replaced.

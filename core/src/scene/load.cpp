@@ -136,6 +136,19 @@ void overlay_operators(Node& base, const Node& over) {
   }
 }
 
+/// The bounds of a scene replace those of the one it extends; an item `inherited` among them stands
+/// for all of those.
+void overlay_expectations(Node& base, const Node& over) {
+  std::vector<Node> items;
+  for (const Node& item : over.items)
+    if (item.kind == Node::Kind::scalar && item.text == inherited_expectations)
+      items.insert(items.end(), base.items.begin(), base.items.end());
+    else
+      items.push_back(item);
+  base = over;
+  base.items = std::move(items);
+}
+
 /// A value that states a field or is one choice among several forms: merging two of them key by key
 /// would mix the forms, so the newer one replaces the older.
 bool is_whole(const std::string& section, const Entry& entry) {
@@ -155,6 +168,9 @@ void overlay_entries(Node& base, const Node& over, const std::string& section) {
     } else if (section.empty() && entry.key == "operators" && old->value.kind == Node::Kind::list &&
                entry.value.kind == Node::Kind::list) {
       overlay_operators(old->value, entry.value);
+    } else if (section.empty() && entry.key == "expect" && old->value.kind == Node::Kind::list &&
+               entry.value.kind == Node::Kind::list) {
+      overlay_expectations(old->value, entry.value);
     } else {
       *old = entry;
     }

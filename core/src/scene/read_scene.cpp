@@ -99,6 +99,8 @@ Scene interpret(Node root, const std::string& path, Problems& problems) {
     scene.parcels.min_volume_ratio = 40;
   }
   scene.background.reference_buoyancy.units = "m s-2";
+  scene.parcels.where.units = "1";
+  scene.parcels.where.constant = 1;
   add_missing_sections(root);
   order_sections(root);
   Reader reader(scene, problems);

@@ -85,9 +85,12 @@ struct Background {
 };
 
 struct ParcelControl {
-  int per_cell = 8;   // m^D on a regular sub-lattice
-  double jitter = 0;  // fraction of the sub-lattice spacing
+  int per_cell = 8;     // m^D on a regular sub-lattice
+  double offset = 0.5;  // of the first lattice point from the cell's corner, in lattice spacings
+  double jitter = 0;    // fraction of the sub-lattice spacing
   std::uint64_t seed = 0;
+  /// Parcels start only where it is positive; a uniform field: everywhere.
+  FieldDescription where;
   double max_aspect_ratio = 4;     // split at lambda ≥ this (2D: >)
   double min_volume_ratio = 20;    // merge below V_cell/ratio (2D default 40)
   double max_volume_ratio = 2.89;  // 2D only: split above V_cell/ratio

@@ -106,8 +106,12 @@ Json key_schema(const Key& key, const void* defaults) {
   }
   if (key.type == KeyType::sections) {
     // References keep the operators' branches out of the main tree.
-    const Json item = key.name == "operators" ? Json{{"$ref", "#/definitions/operator"}}
-                                              : section_schema(*key.table, nullptr);
+    Json item = key.name == "operators" ? Json{{"$ref", "#/definitions/operator"}}
+                                        : section_schema(*key.table, nullptr);
+    if (key.name == "expect") {  // what is said of objects holds of objects alone
+      item["type"] = Json::array({"object", "string"});
+      item["pattern"] = fmt::format("^{}$", inherited_expectations);
+    }
     return {{"description", key.doc}, {"type", "array"}, {"items", item}};
   }
   const Json fallback = default_of(key, defaults);

@@ -106,10 +106,17 @@ CheckedScene check_scene(const fs::path& scene, const CheckRequest& request,
   return checked;
 }
 
-void print(const CheckedScene& checked, std::ostream& out) {
-  out << fmt::format("{}  {}  ({})\n", checked.passed() ? "pass" : "FAIL", checked.scene.string(),
-                     format_duration(checked.seconds));
-  for (const output::ExpectSummary& each : checked.expectations) out << line_of(each) << '\n';
+/// Briefly: one line, and one more for every bound that was missed.
+void print(const CheckedScene& checked, bool briefly, std::ostream& out) {
+  const char* verdict = checked.passed() ? "pass" : "FAIL";
+  if (briefly)
+    out << fmt::format("{}  {:<36} {:>3} bounds  {}\n", verdict, checked.scene.stem().string(),
+                       checked.expectations.size(), format_duration(checked.seconds));
+  else
+    out << fmt::format("{}  {}  ({})\n", verdict, checked.scene.string(),
+                       format_duration(checked.seconds));
+  for (const output::ExpectSummary& each : checked.expectations)
+    if (!briefly || !each.passed) out << line_of(each) << '\n';
   if (!checked.failure.empty()) out << "  " << checked.failure << '\n';
   out << std::flush;
 }
@@ -123,9 +130,11 @@ void print_total(const CheckResult& result, std::ostream& out) {
                       [](const output::ExpectSummary& each) { return !each.passed; }));
     failed += checked.passed() ? 0 : 1;
   }
-  out << fmt::format("\n{} scenes, {} passed, {} failed; {} expectations, {} met, {} missed\n",
+  double seconds = 0;
+  for (const CheckedScene& checked : result.scenes) seconds += checked.seconds;
+  out << fmt::format("\n{} scenes, {} passed, {} failed; {} expectations, {} met, {} missed; {}\n",
                      result.scenes.size(), result.scenes.size() - failed, failed, bounds,
-                     bounds - missed, missed);
+                     bounds - missed, missed, format_duration(seconds));
 }
 
 }  // namespace
@@ -157,17 +166,18 @@ ExitCode CheckResult::code() const {
 
 CheckResult check(const CheckRequest& request, Progress& progress, std::ostream& out,
                   const Runner& run) {
-  std::vector<fs::path> scenes;
+  std::vector<std::pair<fs::path, bool>> scenes;  // and whether one of a folder of several
   for (const std::string& path : request.paths) {
-    for (fs::path& scene : scenes_of(path)) scenes.push_back(std::move(scene));
+    std::vector<fs::path> found = scenes_of(path);
+    for (fs::path& scene : found) scenes.emplace_back(std::move(scene), found.size() > 1);
   }
   const bool is_temporary = request.results_directory.empty();
   const fs::path results =
       is_temporary ? make_temporary_folder() : fs::path(request.results_directory);
   CheckResult result;
-  for (const fs::path& scene : scenes) {
+  for (const auto& [scene, one_of_several] : scenes) {
     result.scenes.push_back(check_scene(scene, request, results, progress, run));
-    print(result.scenes.back(), out);
+    print(result.scenes.back(), one_of_several && !request.all_bounds, out);
     if (result.scenes.back().code == ExitCode::stopped) break;
   }
   print_total(result, out);

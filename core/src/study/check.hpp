@@ -25,6 +25,7 @@ struct CheckRequest {
   std::vector<std::string> overrides;  // key=value, for every scene
   std::string results_directory;       // one folder per scene below it; empty: a temporary one
   int threads = 0;                     // 0: as many as there are cores
+  bool all_bounds = false;             // list them all also for folders of several scenes
 };
 
 struct CheckedScene {
@@ -47,7 +48,8 @@ struct CheckResult {
 using Runner = std::function<model::RunResult(const model::RunRequest&, Progress&)>;
 
 /// Runs the scenes one after another and writes to `out`, as each is done, a line per scene and
-/// per expectation, and a total at the end. A scene that fails does not stop those after it.
+/// per expectation, and a total at the end. Of the scenes of a folder that stands for several, only
+/// the expectations that were missed are listed. A scene that fails does not stop those after it.
 /// A temporary results folder is removed when everything passed and named when not.
 CheckResult check(const CheckRequest& request, Progress& progress, std::ostream& out,
                   const Runner& run = model::run);

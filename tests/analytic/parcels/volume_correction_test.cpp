@@ -18,7 +18,7 @@ double mean_error(int iterations) {
   std::size_t nodes = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Store store(2, {});
-    fill_lattice<2>(store, grid, 4, 0.5, seed);
+    fill_lattice<2>(store, grid, {.per_cell = 4, .jitter = 0.5, .seed = seed});
     Deposit<2> deposit(grid);
     SupportOffsets<2> offsets;
     Upkeep<2> upkeep(grid, deposit.tiling(), 0, SplitCriterion<2>::make(grid, 4, 2.89));

@@ -27,7 +27,8 @@ struct World {
         transport(grid, {}, coriolis, carpenter_kennedy_4(), shape, 3.0 / 64, {}),
         upkeep(grid, transport.deposit().tiling(), 0,
                parcels::SplitCriterion<D>::make(grid, 4, 2.89)) {
-    parcels::fill_lattice<D>(store, grid, D == 3 ? 8 : 9, jitter, 3);
+    parcels::fill_lattice<D>(store, grid,
+                             {.per_cell = D == 3 ? 8 : 9, .jitter = jitter, .seed = 3});
     upkeep.reorder(store, transport.offsets(), times);
   }
   void step(double dt) {

@@ -37,6 +37,13 @@ TEST(Record, AnEarlierTimeIsInterpolatedAndEndsTheStatistics) {
   EXPECT_FALSE(record.statistic(1, "first_time_above", 20.0).has_value());
 }
 
+TEST(Record, RelativeRiseIsMeasuredFromTheFirstValueToTheLargest) {
+  Record record({{"parcels", "1", "", false}});
+  for (const double value : {4.0, 3.0, 10.0, 5.0}) record.append(record.times().size(), {value});
+  EXPECT_EQ(record.statistic(0, "relative_rise", {}), 1.5);
+  EXPECT_EQ(record.statistic(0, "relative_rise", 1.0), 0.0);
+}
+
 TEST(Record, GrowthRateIsTheSlopeOfTheLogarithm) {
   Record record({{"wave", "m s-1", "", false}});
   // Another rate before t = 2, which the fit must not see; the sign may be either.

@@ -55,7 +55,7 @@ double volume_sum(const Gridded<D>& gridded) {
 TEST(Deposit, RegularCirclesFillEveryNode) {
   const mesh::Grid<2> grid({32, 32}, {-0.2, -0.2}, {0.4, 0.4});
   Store store(2, {});
-  fill_lattice<2>(store, grid, 4, 0, 1);
+  fill_lattice<2>(store, grid, {.per_cell = 4});
   Gridded<2> gridded(grid, store);
   EXPECT_EQ(gridded.means({}), 0u);
   EXPECT_NEAR(volume_sum(gridded), 32 * 33 * grid.cell_volume(), 1e-14);
@@ -67,7 +67,7 @@ TEST(Deposit, RegularCirclesFillEveryNode) {
 TEST(Deposit, RegularSpheresFillEveryNode) {
   const mesh::Grid<3> grid({32, 32, 32}, {0, 0, 0}, {1, 1, 1});
   Store store(3, {});
-  fill_lattice<3>(store, grid, 27, 0, 1);
+  fill_lattice<3>(store, grid, {.per_cell = 27});
   std::fill(store.vorticity(0), store.vorticity(0) + store.size(), 1.5);
   Gridded<3> gridded(grid, store);
   EXPECT_EQ(gridded.means({store.vorticity(0)}), 0u);
@@ -81,7 +81,7 @@ TEST(Deposit, RegularSpheresFillEveryNode) {
 TEST(Deposit, OverhangingEllipsesAreFoldedBack) {
   const mesh::Grid<2> grid({4, 4}, {0, 0}, {1, 1});
   Store store(2, {});
-  fill_lattice<2>(store, grid, 4, 0, 1);
+  fill_lattice<2>(store, grid, {.per_cell = 4});
   const double ab = store.volume()[0] / std::numbers::pi;
   const Eigen::Matrix2d upright = Eigen::Vector2d(ab / 3.5, ab * 3.5).asDiagonal();
   for (std::size_t p = 0; p < store.size(); ++p) testing::put_shape<2>(store, p, upright);
@@ -95,7 +95,7 @@ TEST(Deposit, OverhangingEllipsesAreFoldedBack) {
 TEST(Deposit, OverhangingEllipsoidsAreFoldedBack) {
   const mesh::Grid<3> grid({2, 2, 2}, {0, 0, 0}, {1, 1, 1});
   Store store(3, {});
-  fill_lattice<3>(store, grid, 8, 0, 1);
+  fill_lattice<3>(store, grid, {.per_cell = 8});
   const double r2 = std::cbrt(testing::squared_axes_product<3>(store.volume()[0]));
   const Eigen::Matrix3d upright =
       r2 * Eigen::Vector3d(1 / std::sqrt(10.0), 1 / std::sqrt(10.0), 10).asDiagonal();
@@ -145,7 +145,7 @@ TEST(Deposit, EmptyNodesAreCountedAndZero) {
 TEST(Deposit, InterpolationKernelOfADelta) {
   const mesh::Grid<3> grid({8, 8, 8}, {0, 0, 0}, {8, 8, 8});
   Store store(3, {});
-  fill_lattice<3>(store, grid, 8, 0, 1);
+  fill_lattice<3>(store, grid, {.per_cell = 8});
   for (std::size_t p = 0; p < store.size(); ++p) {
     double value = 1;
     for (int d = 0; d < 3; ++d) value *= std::max(0.0, 1 - std::abs(store.position(d)[p] - 4));

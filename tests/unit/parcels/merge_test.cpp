@@ -193,7 +193,7 @@ void expect_round_trip() {
       for (int c = 0; c < store.vorticity_components(); ++c) store.vorticity(c)[p] = 0.1 + c;
       store.uid()[p] = 5;
     }
-    split_pair<D>(store, grid, 0, 1, 1);
+    split_pair<D>(store, grid, CellMetric<D>(grid), 0, 1, 1);
     const auto outcome = merge_once(store, grid, volume * 0.75);
     ASSERT_EQ(outcome.left.size(), 1u);
     const std::size_t r = outcome.left[0];

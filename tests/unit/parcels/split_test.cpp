@@ -53,7 +53,7 @@ TEST(Split, EllipseAtFortyFiveDegrees) {
   Eigen::Matrix2d b;
   b << (a2 + b2) * half, (a2 - b2) * half, (a2 - b2) * half, (a2 + b2) * half;
   Store store = two_copies<2>(b, pi, Eigen::Vector2d(0, 0));
-  split_pair<2>(store, wide_grid<2>(), 0, 1, 3);
+  split_pair<2>(store, wide_grid<2>(), CellMetric<2>(wide_grid<2>()), 0, 1, 3);
   const double reach = std::sqrt(3.0) / 4 * std::sqrt(a2) * std::sqrt(half);
   for (std::size_t p = 0; p < 2; ++p) {
     EXPECT_NEAR(store.shape(0)[p], b(0, 0) - 0.75 * a2 * half, 1e-15);
@@ -77,7 +77,7 @@ TEST(Split, EllipsoidInEveryOrientation) {
           -std::sin(f);
       const Eigen::Matrix3d b = axes * Eigen::Vector3d(5, 0.2, 1).asDiagonal() * axes.transpose();
       Store store = two_copies<3>(b, 4 * pi / 3, Eigen::Vector3d(1, 2, 3));
-      split_pair<3>(store, wide_grid<3>(), 0, 1, 3);
+      split_pair<3>(store, wide_grid<3>(), CellMetric<3>(wide_grid<3>()), 0, 1, 3);
       const Eigen::Vector3d radial = axes.col(0);
       const double h = 0.5 * std::sqrt(0.6) * std::sqrt(5.0);
       for (std::size_t p = 0; p < 2; ++p) {
@@ -102,7 +102,7 @@ void expect_moments_kept() {
     Vector x;
     for (int d = 0; d < D; ++d) x(d) = testing::uniform(random, -2, 2);
     Store store = two_copies<D>(b, volume, x);
-    split_pair<D>(store, wide_grid<D>(), 0, 1, 9);
+    split_pair<D>(store, wide_grid<D>(), CellMetric<D>(wide_grid<D>()), 0, 1, 9);
     Vector first = Vector::Zero();
     Matrix second = Matrix::Zero();
     for (std::size_t p = 0; p < 2; ++p) {
@@ -137,7 +137,7 @@ TEST(Split, ExtensiveScalarsSumToTheWholeBitwise) {
     Store store = two_copies<2>(Eigen::Matrix2d::Identity(), pi, Eigen::Vector2d(0, 0));
     const double amount = draw == 0 ? 5e-324 : testing::uniform(random, 0, 1);
     store.scalar(1)[0] = store.scalar(1)[1] = amount;
-    split_pair<2>(store, wide_grid<2>(), 0, 1, 1);
+    split_pair<2>(store, wide_grid<2>(), CellMetric<2>(wide_grid<2>()), 0, 1, 1);
     EXPECT_EQ(store.scalar(1)[0] + store.scalar(1)[1], amount);
   }
 }
@@ -145,7 +145,7 @@ TEST(Split, ExtensiveScalarsSumToTheWholeBitwise) {
 // The parent keeps its identity; siblings, generations and steps give different ones.
 TEST(Split, IdentitiesAreNew) {
   Store store = two_copies<2>(Eigen::Matrix2d::Identity(), pi, Eigen::Vector2d(0, 0));
-  split_pair<2>(store, wide_grid<2>(), 0, 1, 17);
+  split_pair<2>(store, wide_grid<2>(), CellMetric<2>(wide_grid<2>()), 0, 1, 17);
   EXPECT_EQ(store.uid()[0], 42u);
   EXPECT_EQ(store.uid()[1], child_uid(42, 17));
   std::set<std::uint64_t> seen;
@@ -156,13 +156,54 @@ TEST(Split, IdentitiesAreNew) {
   EXPECT_EQ(seen.size(), 500u * 201u);
 }
 
+// In cells that are no cubes a split halves what is longest in cells; volume, centroid and second
+// moment are kept, which any affine map leaves true.
+TEST(Split, KeepsMomentsInTheMetricOfFlatCells) {
+  const mesh::Grid<3> grid({8, 8, 8}, {-80, -80, -8}, {160, 160, 16});
+  const CellMetric<3> metric(grid);
+  testing::Random random(5);
+  for (int draw = 0; draw < 200; ++draw) {
+    const double volume = testing::uniform(random, 0.5, 2);
+    const Eigen::Matrix3d b = testing::random_shape_of_volume<3>(random, volume, 3);
+    const Eigen::Vector3d x(1, 2, 0.5);
+    Store store = two_copies<3>(b, volume, x);
+    split_pair<3>(store, grid, metric, 0, 1, 1);
+    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+    for (std::size_t p = 0; p < 2; ++p) {
+      const Eigen::Vector3d d = testing::get_position<3>(store, p) - x;
+      centroid += 0.5 * d;
+      second += 0.5 * (get_shape<3>(store, p) + 5 * d * d.transpose());
+      // (abc)^2 of half the volume is a quarter.
+      EXPECT_NEAR(get_shape<3>(store, p).determinant() / (0.25 * b.determinant()), 1, 1e-11);
+      EXPECT_EQ(store.volume()[p], 0.5 * volume);
+    }
+    EXPECT_LT(centroid.norm(), 1e-14);
+    EXPECT_LT((second - b).norm(), 1e-13 * b.norm());
+  }
+}
+
+// A parcel of the cell's own shape is round to the mesh, whatever the cell; the same parcel turned
+// on its side is twenty-five cells as long as thick.
+TEST(Split, ShapeOfTheCellIsRound) {
+  const mesh::Grid<3> grid({8, 8, 8}, {0, 0, 0}, {40, 40, 8});
+  const auto criterion = SplitCriterion<3>::make(grid, 4, 2.89);
+  const CellMetric<3> metric(grid);
+  EXPECT_FALSE(metric.cubic);
+  EXPECT_NEAR(metric.stretch[0] * metric.stretch[1] * metric.stretch[2], 1, 1e-14);
+  EXPECT_NEAR(metric.stretch[2] / metric.stretch[0], 5, 1e-14);
+  const double radius = 0.31 * metric.edge;  // half the longest allowed
+  EXPECT_FALSE(criterion.splits(radius * radius, 1.0, 1.0));
+  EXPECT_TRUE(criterion.splits(radius * radius, 25.0 * 25.0, 1.0));
+}
+
 // Dossier 7.2: a child whose centre is outside the wall is reflected; horizontally it wraps.
 TEST(Split, ChildrenAreReflectedAndWrapped) {
   const mesh::Grid<3> grid({4, 4, 4}, {0, 0, 0}, {4, 4, 4});
   Eigen::Matrix3d b = Eigen::Vector3d(0.04, 0.04, 1).asDiagonal();
   b(0, 2) = b(2, 0) = 0.05;
   Store store = two_copies<3>(b, 1, Eigen::Vector3d(3.999, 2, 0.1));
-  split_pair<3>(store, grid, 0, 1, 1);
+  split_pair<3>(store, grid, CellMetric<3>(grid), 0, 1, 1);
   const double xx = std::abs(store.shape(2)[0]);
   EXPECT_GT(xx, 0);
   EXPECT_EQ(store.shape(2)[0], -store.shape(2)[1]) << "one of the two was mirrored";
@@ -173,12 +214,12 @@ TEST(Split, ChildrenAreReflectedAndWrapped) {
   }
 }
 
-// Dossier 7.1: 3D λ = a/c ≥ 4 or a ≥ (3/4π)^⅓ Δmin = 0.6203505 Δmin; 2D λ > 4 strictly, or
-// V > V_cell/2.89.
+// Dossier 7.1: 3D λ = a/c ≥ 4 or a ≥ (3/4π)^⅓ Δ = 0.6203505 Δ, with the edge Δ of the cube of the
+// cell's volume; 2D λ > 4 strictly, or V > V_cell/2.89.
 TEST(SplitCriterion, ThresholdsOfTheMethod) {
   const mesh::Grid<3> space({10, 10, 10}, {0, 0, 0}, {20, 30, 10});
   const auto in_space = SplitCriterion<3>::make(space, 4, 2.89);
-  EXPECT_NEAR(std::sqrt(in_space.squared_longest), 0.6203505, 1e-7);
+  EXPECT_NEAR(std::sqrt(in_space.squared_longest), 0.6203505 * std::cbrt(6.0), 2e-7);
   EXPECT_TRUE(in_space.splits(0.01, 16, 1e9));
   EXPECT_FALSE(in_space.splits(0.01, std::nextafter(16.0, 0.0), 1e9));
   EXPECT_TRUE(in_space.splits(in_space.squared_longest, 1, 0));

@@ -145,6 +145,29 @@ TEST(ReadScene, InheritsByKeysAndBlamesTheRightFile) {
   EXPECT_NE(text.find("child.yaml:2:13: error: 'end'"), std::string::npos) << text;
 }
 
+// Bounds replace those of the scene that is extended, unless those are asked for.
+TEST(ReadScene, ExpectationsAreInheritedOnRequest) {
+  const fs::path folder = fs::path(testing::TempDir()) / "inherited";
+  fs::create_directories(folder);
+  std::ofstream(folder / "base.yaml")
+      << cube << "expect: [{diagnostic: volume, at_least: 1}, {diagnostic: parcels, at_most: 9}]\n";
+  std::ofstream(folder / "middle.yaml")
+      << "extends: base.yaml\nexpect: [{diagnostic: max_speed, at_most: 1}, inherited]\n";
+  std::ofstream(folder / "child.yaml")
+      << "extends: middle.yaml\nexpect:\n  - inherited\n  - {diagnostic: enstrophy, at_most: 2}\n";
+  std::ofstream(folder / "other.yaml")
+      << "extends: middle.yaml\nexpect: [{diagnostic: enstrophy, at_most: 2}]\n";
+  const auto diagnostics = [&](const char* file) {
+    std::vector<std::string> names;
+    for (const Expectation& e : read_scene((folder / file).string()).expect)
+      names.push_back(e.diagnostic);
+    return names;
+  };
+  EXPECT_EQ(diagnostics("child.yaml"),
+            (std::vector<std::string>{"max_speed", "volume", "parcels", "enstrophy"}));
+  EXPECT_EQ(diagnostics("other.yaml"), std::vector<std::string>{"enstrophy"});
+}
+
 TEST(ReadScene, MissingFilesAndFoldersAreExplained) {
   const auto failure = [](const std::string& path) -> std::pair<int, std::string> {
     try {

@@ -85,45 +85,89 @@ Pack squared_axes_product_3d(Pack volume) {
   return abc * abc;
 }
 
-/// Restores det B exactly; a matrix that is no longer positive definite becomes a sphere.
-Symmetric3<Pack> close_shape(Symmetric3<Pack> b, Pack volume, std::size_t count,
+Pack cube_root(Pack x) {
+  for (int lane = 0; lane < lanes; ++lane) x[lane] = __builtin_cbrt(x[lane]);
+  return x;
+}
+
+/// A shape with det B = target whose longest half-axis is at most `limit` times the others:
+/// directions are kept, what is thinner is made as thick as that. What has no longest axis is a
+/// sphere.
+Symmetric3<Pack> blunted(const Symmetric3<Pack>& b, Pack target, double limit) {
+  const auto axes = principal_axes(b);
+  const Vector3<Pack> n = axes.major, m = axes.middle, l = cross(n, m);
+  const auto measurable = (axes.a2 > 0.0) & (axes.a2 < 1e300);
+  const Pack zero{}, one = broadcast(1.0), least = broadcast(1.0 / (limit * limit));
+  const Pack a2 = select(measurable, axes.a2, one);
+  // Ratios to the longest axis, so that products neither over- nor underflow.
+  const Pack b2 = select(measurable, maximum(axes.b2 / a2, least), one);
+  const Pack c2 = select(measurable, maximum(axes.c2 / a2, least), one);
+  const Pack radius2 = cube_root(target), scale = radius2 / cube_root(b2 * c2);
+  const auto sum = [&](Pack nn, Pack mm, Pack ll, Pack sphere) {
+    return select(measurable, scale * (nn + b2 * mm + c2 * ll), sphere);
+  };
+  return {
+      sum(n.x * n.x, m.x * m.x, l.x * l.x, radius2), sum(n.x * n.y, m.x * m.y, l.x * l.y, zero),
+      sum(n.x * n.z, m.x * m.z, l.x * l.z, zero),    sum(n.y * n.y, m.y * m.y, l.y * l.y, radius2),
+      sum(n.y * n.z, m.y * m.z, l.y * l.z, zero),    sum(n.z * n.z, m.z * m.z, l.z * l.z, radius2)};
+}
+
+/// The same of an ellipse, given the root of the target.
+Symmetric2<Pack> blunted(const Symmetric2<Pack>& b, Pack ab, double limit) {
+  const auto axes = principal_axes(b);
+  const auto measurable = (axes.a2 > 0.0) & (axes.a2 < 1e300);
+  const Pack one = broadcast(1.0), least = broadcast(1.0 / (limit * limit));
+  const Pack a2 = select(measurable, axes.a2, one);
+  const Pack b2 = select(measurable, maximum(axes.b2 / a2, least), one);
+  const Pack scale = ab * square_root(1.0 / b2);
+  const Pack x = axes.major_x, z = axes.major_z;
+  return {select(measurable, scale * (x * x + b2 * z * z), ab),
+          select(measurable, scale * (1.0 - b2) * x * z, Pack{}),
+          select(measurable, scale * (z * z + b2 * x * x), ab)};
+}
+
+/// Restores det B exactly. The determinant of a needle of aspect ratio λ is a difference that keeps
+/// 1/λ⁴ of its terms: beyond the limit it is rounding and says nothing. Such a shape, and one that
+/// is not positive definite, is blunted.
+Symmetric3<Pack> close_shape(Symmetric3<Pack> b, Pack volume, std::size_t count, double limit,
                              std::size_t& broken) {
   const Pack target = squared_axes_product_3d(volume);
   const Pack det = determinant(b);
-  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (b.xx * b.yy - b.xy * b.xy > 0.0);
+  const Pack trace = b.xx + b.yy + b.zz;
+  // (abc)²/(a² + b² + c²)³ is λ⁻⁴ for a needle, b = c, and λ⁻²/8 for a disc, a = b, whose
+  // determinant loses less: discs may be as flat as limit²/√8.
+  const double thinnest = 1.0 / (limit * limit * limit * limit);
+  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (b.xx * b.yy - b.xy * b.xy > 0.0) &
+                       (target > thinnest * (trace * trace * trace));
   const Pack s = cube_root_near_one(select(healthy, target / det, broadcast(1.0)));
-  b = {s * b.xx, s * b.xy, s * b.xz, s * b.yy, s * b.yz, s * b.zz};
+  const Symmetric3<Pack> whole{s * b.xx, s * b.xy, s * b.xz, s * b.yy, s * b.yz, s * b.zz};
   const std::size_t lost = count - count_lanes(healthy, count);
-  if (lost > 0) [[unlikely]] {
-    broken += lost;
-    Pack radius2 = target;
-    for (int lane = 0; lane < lanes; ++lane) radius2[lane] = __builtin_cbrt(target[lane]);
-    b.xx = select(healthy, b.xx, radius2);
-    b.yy = select(healthy, b.yy, radius2);
-    b.zz = select(healthy, b.zz, radius2);
-    b.xy = select(healthy, b.xy, Pack{});
-    b.xz = select(healthy, b.xz, Pack{});
-    b.yz = select(healthy, b.yz, Pack{});
-  }
-  return b;
+  if (lost == 0) [[likely]]
+    return whole;
+  broken += lost;
+  const Symmetric3<Pack> blunt = blunted(b, target, limit);
+  return {select(healthy, whole.xx, blunt.xx), select(healthy, whole.xy, blunt.xy),
+          select(healthy, whole.xz, blunt.xz), select(healthy, whole.yy, blunt.yy),
+          select(healthy, whole.yz, blunt.yz), select(healthy, whole.zz, blunt.zz)};
 }
 
-Symmetric2<Pack> close_shape(Symmetric2<Pack> b, Pack area, std::size_t count,
+Symmetric2<Pack> close_shape(Symmetric2<Pack> b, Pack area, std::size_t count, double limit,
                              std::size_t& broken) {
   const Pack ab = area * 0.31830988618379067154;  // 1/π
   const Pack target = ab * ab;
   const Pack det = determinant(b);
-  const auto healthy = (det > 0.0) & (b.xx > 0.0);
+  const Pack trace = b.xx + b.zz;
+  const double thinnest = 1.0 / (limit * limit);
+  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (target > thinnest * (trace * trace));
   const Pack s = square_root(select(healthy, target / det, broadcast(1.0)));
-  b = {s * b.xx, s * b.xz, s * b.zz};
+  const Symmetric2<Pack> whole{s * b.xx, s * b.xz, s * b.zz};
   const std::size_t lost = count - count_lanes(healthy, count);
-  if (lost > 0) [[unlikely]] {
-    broken += lost;
-    b.xx = select(healthy, b.xx, ab);
-    b.zz = select(healthy, b.zz, ab);
-    b.xz = select(healthy, b.xz, Pack{});
-  }
-  return b;
+  if (lost == 0) [[likely]]
+    return whole;
+  broken += lost;
+  const Symmetric2<Pack> blunt = blunted(b, ab, limit);
+  return {select(healthy, whole.xx, blunt.xx), select(healthy, whole.xz, blunt.xz),
+          select(healthy, whole.zz, blunt.zz)};
 }
 
 void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Matrix3<Pack>& s) {
@@ -153,7 +197,7 @@ void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Mat
     b = {b.xx + job.advance * k.xx, b.xy + job.advance * k.xy, b.xz + job.advance * k.xz,
          b.yy + job.advance * k.yy, b.yz + job.advance * k.yz, b.zz + job.advance * k.zz};
   }
-  if (job.last) b = close_shape(b, load(job.volume + p), count, job.broken);
+  if (job.last) b = close_shape(b, load(job.volume + p), count, job.aspect_limit, job.broken);
   store(job.shape[0] + p, b.xx);
   store(job.shape[1] + p, b.xy);
   store(job.shape[2] + p, b.xz);
@@ -182,7 +226,7 @@ void advance_shape(StageJob<2>& job, std::size_t p, std::size_t count, const Mat
     if (job.evaluate_only) return;
     b = {b.xx + job.advance * k.xx, b.xz + job.advance * k.xz, b.zz + job.advance * k.zz};
   }
-  if (job.last) b = close_shape(b, load(job.volume + p), count, job.broken);
+  if (job.last) b = close_shape(b, load(job.volume + p), count, job.aspect_limit, job.broken);
   store(job.shape[0] + p, b.xx);
   store(job.shape[1] + p, b.xz);
   store(job.shape[2] + p, b.zz);

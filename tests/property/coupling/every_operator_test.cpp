@@ -1,0 +1,213 @@
+// Laws that every operator of this repository keeps, whatever it computes: on random parcels within
+// its declared ranges and time steps over ten decades its results are finite and in range, budgets
+// close, and a parcel it calls inactive is one it would leave as it is, to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include "base/error.hpp"
+#include "coupling/operator_sequence.hpp"
+#include "host/library.hpp"
+
+namespace pileus::coupling {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path plugins = PILEUS_BINARY_DIR "/lib/pileus/plugins";
+using Random = std::mt19937_64;
+
+/// One operator with one of its choices taken; everything else at its default.
+struct Case {
+  std::string id, parameter, choice;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.id << (c.parameter.empty() ? "" : " " + c.parameter + " = " + c.choice);
+}
+
+std::vector<Case> every_case() {
+  std::vector<Case> cases;
+  std::vector<fs::path> libraries;
+  for (const auto& entry : fs::directory_iterator(plugins))
+    if (entry.path().extension() == ".so") libraries.push_back(entry.path());
+  std::sort(libraries.begin(), libraries.end());
+  for (const fs::path& path : libraries)
+    for (const host::OperatorTable& table : host::load_library(path).operators) {
+      cases.push_back({table.op.id, "", ""});
+      for (const pileus_parameter& p : table.parameters)
+        if (p.type == PILEUS_CHOICE)
+          for (const char* const* choice = p.choices + 1; *choice != nullptr; ++choice)
+            cases.push_back({table.op.id, p.name, *choice});
+    }
+  return cases;
+}
+
+std::vector<OperatorEntry> load(const Case& c) {
+  scene::Scene scene;
+  scene::OperatorBlock block;
+  block.use = c.id;
+  block.name = "subject";
+  if (!c.parameter.empty())
+    block.parameters.emplace_back(c.parameter, scene::RawValue{c.choice, false, {}, {}, {}});
+  scene.operators.push_back(block);
+  scene::Problems problems;
+  auto entries = load_operators(scene, {{plugins}}, problems);
+  EXPECT_TRUE(problems.empty()) << problems.render();
+  return entries;
+}
+
+/// What the operator takes from parcels without owning it: the initial state has to give it.
+std::vector<std::string> read_quantities(const OperatorEntry& entry) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < entry.table->quantities.size(); ++i) {
+    const pileus_quantity& row = entry.table->quantities[i];
+    if ((row.access & PILEUS_CREATE) == 0 && row.nature != PILEUS_DERIVED &&
+        !is_core_quantity(row.name) && holds(entry.table->quantity_when[i], entry.values.numbers()))
+      names.emplace_back(row.name);
+  }
+  return names;
+}
+
+/// The ends of the range, zero, and anything between on a linear or logarithmic scale.
+double draw(Random& random, const parcels::Scalar& scalar) {
+  constexpr double widest = 1e6;  // a range without an end is tried up to here
+  const double low = std::max(scalar.low, -widest), high = std::min(scalar.high, widest);
+  const double u = std::uniform_real_distribution<double>(0, 1)(random);
+  switch (random() % 8) {
+    case 0:
+      return low;
+    case 1:
+      return high;
+    case 2:
+      return low <= 0 && high >= 0 ? 0 : low;
+    case 3:
+    case 4:
+      return std::clamp(low + (high - low) * std::pow(10.0, -20 * u), low, high);
+    default:
+      return std::clamp(low + (high - low) * u, low, high);
+  }
+}
+
+void fill(parcels::Store& store, Random& random) {
+  constexpr std::size_t parcels = 777;  // some blocks and a rest
+  store.resize(parcels);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (std::size_t p = 0; p < parcels; ++p) {
+    store.uid()[p] = p + 1;
+    store.volume()[p] = 10 * unit(random) + 1e-3;
+    for (int d = 0; d < 3; ++d) store.position(d)[p] = 2000 * unit(random);
+    for (int c = 0; c < 3; ++c) store.vorticity(c)[p] = 0.2 * unit(random) - 0.1;
+    for (int c = 0; c < 6; ++c) store.shape(c)[p] = c == 0 || c == 3 || c == 5 ? 1 : 0;
+    for (std::size_t s = 0; s < store.scalars().size(); ++s)
+      store.scalar(static_cast<int>(s))[p] = draw(random, store.scalars()[s]);
+  }
+}
+
+class EveryOperator : public ::testing::TestWithParam<Case> {
+ protected:
+  struct Run {
+    std::unique_ptr<OperatorSequence> sequence;
+    std::unique_ptr<parcels::Store> store;
+  };
+
+  /// A bound sequence on random parcels, the same for the same seed.
+  static Run start(std::uint64_t seed, bool skip_inactive) {
+    auto entries = load(GetParam());
+    SequenceOptions options;
+    options.initial = read_quantities(entries.front());
+    options.skip_inactive = skip_inactive;
+    Run run;
+    run.sequence = std::make_unique<OperatorSequence>(std::move(entries), std::move(options));
+    run.store = std::make_unique<parcels::Store>(3, run.sequence->required_scalars());
+    Random random(seed);
+    fill(*run.store, random);
+    const pileus_grid grid = abi_grid(mesh::Grid<3>({4, 4, 4}, {0, 0, 0}, {2000, 2000, 2000}));
+    run.sequence->bind(*run.store, grid);
+    run.sequence->init({0, 0, 0});
+    return run;
+  }
+
+  static void step(Run& run, std::uint64_t number, double dt) {
+    const StepTime at{number, static_cast<double>(number) * dt, dt};
+    run.sequence->apply_before_transport(at);
+    run.sequence->apply_after_transport(at);
+    run.sequence->diagnose(at);
+  }
+
+  static double draw_step(Random& random) {
+    return std::pow(10.0, std::uniform_real_distribution<double>(-6, 4)(random));
+  }
+};
+
+TEST_P(EveryOperator, stays_finite_and_in_range) {
+  Random random(11);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const double dt = draw_step(random);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed << ", dt = " << dt);
+    Run run = start(seed, true);
+    for (std::uint64_t number = 0; number < 3; ++number) step(run, number, dt);
+    const auto& scalars = run.store->scalars();
+    for (std::size_t s = 0; s < scalars.size(); ++s)
+      for (std::size_t p = 0; p < run.store->size(); ++p) {
+        const double value = run.store->scalar(static_cast<int>(s))[p];
+        ASSERT_TRUE(std::isfinite(value)) << scalars[s].name << " of parcel " << p;
+        ASSERT_GE(value, scalars[s].low) << scalars[s].name << " of parcel " << p;
+        ASSERT_LE(value, scalars[s].high) << scalars[s].name << " of parcel " << p;
+      }
+  }
+}
+
+TEST_P(EveryOperator, changes_a_budget_by_its_declared_sources_alone) {
+  Random random(12);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const double dt = draw_step(random);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed << ", dt = " << dt);
+    Run run = start(seed, true);
+    for (std::uint64_t number = 0; number < 3; ++number) step(run, number, dt);
+    for (const OperatorBudget& budget : run.sequence->ledger().operators.at(0).budgets) {
+      // Every parcel's change rounds by a few units in the last place of what it holds.
+      double held = 0;
+      for (std::size_t s = 0; s < run.store->scalars().size(); ++s)
+        if (run.store->scalars()[s].budget == budget.budget)
+          for (std::size_t p = 0; p < run.store->size(); ++p)
+            held += run.store->volume()[p] * std::abs(run.store->scalar(static_cast<int>(s))[p]);
+      const double allowed =
+          64 * 1.1e-16 * (held + std::abs(budget.source) + std::abs(budget.change));
+      EXPECT_LE(std::abs(budget.defect()), allowed) << budget.budget;
+    }
+  }
+}
+
+TEST_P(EveryOperator, leaves_inactive_parcels_as_they_are) {
+  Random random(13);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const double dt = draw_step(random);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed << ", dt = " << dt);
+    Run skipping = start(seed, true), complete = start(seed, false);
+    for (std::uint64_t number = 0; number < 3; ++number) {
+      step(skipping, number, dt);
+      step(complete, number, dt);
+    }
+    ASSERT_EQ(skipping.store->column_count(), complete.store->column_count());
+    for (int c = 0; c < skipping.store->column_count(); ++c)
+      EXPECT_EQ(std::memcmp(skipping.store->column(c), complete.store->column(c),
+                            skipping.store->size() * sizeof(double)),
+                0)
+          << skipping.store->column_name(c);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InTree, EveryOperator, ::testing::ValuesIn(every_case()),
+                         [](const ::testing::TestParamInfo<Case>& each) {
+                           std::string name = each.param.id + "_" + each.param.choice;
+                           name = name.substr(name.rfind('.') + 1);
+                           std::erase_if(name, [](char c) { return !std::isalnum(c) && c != '_'; });
+                           return name + std::to_string(each.index);
+                         });
+
+}  // namespace
+}  // namespace pileus::coupling
