@@ -14,6 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* liquid_name = "mass_fraction_of_cloud_liquid_water_in_air";
 constexpr const char* rain_name = "mass_fraction_of_rain_in_air";
+constexpr const char* total_water_name = "total_water_mass_fraction";
 constexpr const char* water_budget = "water";
 
 struct StateSums {
@@ -158,6 +159,7 @@ void Diagnostics::add_scalars(const parcels::Store& store) {
 void Diagnostics::add_water(const scene::Scene& scene, const Simulation& simulation) {
   const parcels::Store& store = simulation.store();
   liquid_scalar_ = store.find_scalar(liquid_name);
+  water_scalar_ = store.find_scalar(total_water_name);
   if (liquid_scalar_ >= 0) {
     mean_liquid_ = add("mean_liquid_water", "1", "mean cloud liquid water");
     max_liquid_ = add("max_liquid_water", "1", "largest cloud liquid water of a parcel");

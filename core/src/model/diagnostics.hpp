@@ -89,7 +89,7 @@ class Diagnostics {
   std::vector<SurfaceEntries> surface_entries_;
   std::optional<WaterPath> water_path_;  // of moist scenes
   double cloud_threshold_;
-  int liquid_scalar_ = -1, rain_scalar_ = -1;
+  int liquid_scalar_ = -1, water_scalar_ = -1, rain_scalar_ = -1;
   int kinetic_, grid_kinetic_, potential_, available_, total_, mechanical_, enstrophy_, volume_,
       mean_buoyancy_, min_buoyancy_, max_buoyancy_, max_speed_, max_vertical_velocity_,
       min_vertical_velocity_, max_vorticity_, volume_error_rms_, volume_error_max_, parcels_;

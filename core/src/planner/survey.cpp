@@ -22,8 +22,8 @@ parcels::Store lattice_of(const scene::Scene& scene) {
   std::copy_n(scene.domain.lower.begin(), D, lower.begin());
   std::copy_n(scene.domain.extent.begin(), D, extent.begin());
   parcels::Store store(D, {});
-  parcels::fill_lattice<D>(store, mesh::Grid<D>(cells, lower, extent), scene.parcels.per_cell, 0.0,
-                           scene.parcels.seed);
+  parcels::fill_lattice<D>(store, mesh::Grid<D>(cells, lower, extent),
+                           {scene.parcels.per_cell, scene.parcels.offset, 0.0, scene.parcels.seed});
   return store;
 }
 
