@@ -111,10 +111,12 @@ def write_table(rows):
 
 
 def write_densities(densities):
-    names = [name for name, _ in densities]
+    """A column for every run, that of a run that was not made full of question marks."""
+    names = [label for label, _, _ in RUNS]
     lines = ["# density of q_l/q_0 by bin", "# bin " + " ".join(names)]
     for k in range(BINS):
-        lines.append(f"{(k + 0.5) * WIDTH:.6f} " + " ".join(f"{d[k]:.5g}" for _, d in densities))
+        row = [f"{densities[n][k]:.5g}" if n in densities else "?" for n in names]
+        lines.append(f"{(k + 0.5) * WIDTH:.6f} " + " ".join(row))
     (FIGURES / "mixing_density.dat").write_text("\n".join(lines) + "\n")
 
 
@@ -125,17 +127,19 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--only", nargs="*", help="labels of runs to make and show")
     given = parser.parse_args()
-    rows, densities = [], []
+    rows, densities = [], {}
     for label, scene, settings in RUNS:
         if given.only and label not in given.only:
             continue
         folder = run(given.program.resolve(), given.results, given.threads, label, scene, settings)
         values = density(folder)
         rows.append((label, measures(folder, values)))
-        densities.append((label, values))
+        densities[label] = values
     write_table(rows + list(published()))
     write_densities(densities)
-    subprocess.run(["gnuplot", FIGURES / "mixing.gp"], check=True, cwd=ROOT)
+    schemes = int("overlap" in densities)
+    subprocess.run(["gnuplot", "-e", f"schemes = {schemes}", FIGURES / "mixing.gp"], check=True,
+                   cwd=ROOT)
 
 
 if __name__ == "__main__":

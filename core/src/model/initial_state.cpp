@@ -140,16 +140,13 @@ dynamics::ReferenceProfile profile_over_height(const scene::FieldDescription& fi
     throw Error(ExitCode::usage, fmt::format("{}: error: {} must be a function of z alone.",
                                              scene::describe(field.where), what));
   std::vector<double> z;
-  // The table asks for each of its heights once, from the bottom up.
-  dynamics::ReferenceProfile(bottom, top, points, [&](double height) {
-    z.push_back(height);
-    return 1.0;
-  });
+  for (int i = 0; i < points; ++i)
+    z.push_back(bottom + static_cast<double>(i) / (points - 1) * (top - bottom));
   const std::vector<double> x(z.size(), scene.domain.lower.at(0)),
       y(z.size(), scene.domain.dimension == 3 ? scene.domain.lower.at(1) : 0.0);
   std::vector<double> value(z.size());
   sampler.sample(z.size(), x.data(), y.data(), z.data(), value.data());
-  std::size_t next = 0;
+  std::size_t next = 0;  // the table asks for each of these heights once, from the bottom up
   return dynamics::ReferenceProfile(bottom, top, points, [&](double) { return value[next++]; });
 }
 

@@ -32,7 +32,7 @@ std::string align(const std::vector<Cells>& rows) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string padding(widths[c] - width_of(row[c]), ' ');
-      line += (c == 0 ? "  " : "  ") + (c == 0 ? row[c] + padding : padding + row[c]);
+      line += "  " + (c == 0 ? row[c] + padding : padding + row[c]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + '\n';

@@ -90,8 +90,8 @@ TEST(Stretching, ExponentialOfATracelessMatrixHasDeterminantOne) {
 
 /// ⟨tr B(t)⟩ = tr B(0) exp(D(d+2)(d−1)t): with D = 0.1, t = 1 that is 1.4918 in the plane and
 /// 2.7183 in space; det B stays to 2e-12 and the rounding of its evaluation; the traceless part of
-/// ⟨B⟩ decays as exp(−2Dt), for d⟨B⟩/dt = D[(d+1) tr⟨B⟩ I − 2⟨B⟩]. The scheme's weak error is of the
-/// order of D dt (d+2)(d−1) = 0.02 of the exponent's increment per step, below 1 % of the mean.
+/// ⟨B⟩ decays as exp(−2Dt), for d⟨B⟩/dt = D[(d+1) tr⟨B⟩ I − 2⟨B⟩]. The scheme's weak error is of
+/// the order of D dt (d+2)(d−1) = 0.02 of the exponent's increment per step, below 1 % of the mean.
 template <int D>
 void expect_moments() {
   constexpr int n = 40000, steps = 50;
