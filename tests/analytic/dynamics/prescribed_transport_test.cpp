@@ -56,7 +56,7 @@ struct World {
         transport(grid, std::make_unique<Given<D>>(std::move(flow), steady), carpenter_kennedy_4(),
                   shape, {}),
         upkeep(grid, transport.deposit().tiling(), 0, parcels::SplitCriterion<D>::never()) {
-    parcels::fill_lattice<D>(store, grid, D == 3 ? 8 : 9, 0.5, 3);
+    parcels::fill_lattice<D>(store, grid, {.per_cell = D == 3 ? 8 : 9, .jitter = 0.5, .seed = 3});
     upkeep.reorder(store, transport.offsets(), times);
     for (int d = 0; d < D; ++d)
       start.emplace_back(store.position(d), store.position(d) + store.size());
