@@ -3,13 +3,16 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupling/operator_entry.hpp"
 #include "coupling/operator_sequence.hpp"
 #include "host/search.hpp"
 #include "model/operator_physics.hpp"
+#include "model/plan_run.hpp"
 #include "model/simulation.hpp"
+#include "planner/tripwire.hpp"
 #include "scene/read_scene.hpp"
 
 namespace pileus::bench {
@@ -20,15 +23,17 @@ class PreparedScene {
  public:
   PreparedScene(const std::string& path, const std::vector<std::string>& overrides)
       : scene_(read(path, overrides)),
-        sequence_(load(path), options()),
-        physics_(sequence_),
+        planned_(model::plan_run(scene_, load(path))),
+        sequence_(std::move(planned_.operators), options()),
+        physics_(sequence_, planner::Tripwires(planned_.plan)),
         simulation_(model::make_simulation(scene_, sequence_.required_scalars(), physics_)) {
-    sequence_.bind(simulation_->store(), simulation_->plugin_grid());
+    sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
     simulation_->initialise(scene_);
     sequence_.init({0, 0.0, 0.0});
     simulation_->evaluate();
   }
 
+  const coupling::OperatorSequence& sequence() const { return sequence_; }
   const scene::Scene& scene() const { return scene_; }
   model::Simulation& simulation() { return *simulation_; }
 
@@ -55,6 +60,7 @@ class PreparedScene {
   }
 
   scene::Scene scene_;
+  model::PlannedRun planned_;
   coupling::OperatorSequence sequence_;
   model::OperatorPhysics physics_;
   std::unique_ptr<model::Simulation> simulation_;

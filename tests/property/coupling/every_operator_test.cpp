@@ -119,7 +119,7 @@ class EveryOperator : public ::testing::TestWithParam<Case> {
     auto entries = load(GetParam());
     SequenceOptions options;
     options.initial = read_quantities(entries.front());
-    options.skip_inactive = skip_inactive;
+    options.coupling.skip_inactive = skip_inactive;
     Run run;
     run.sequence = std::make_unique<OperatorSequence>(std::move(entries), std::move(options));
     run.store = std::make_unique<parcels::Store>(3, run.sequence->required_scalars());
