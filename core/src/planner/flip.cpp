@@ -42,7 +42,7 @@ double factor_of(RuleNumber& formula, std::vector<double> extrema, std::size_t i
   return best == 0 ? 0 : std::exp(best);
 }
 
-std::string readable(std::string name) {
+std::string readable(const std::string& name) {
   if (name == "highest_height") return "height of the lid (m)";
   if (name == "lowest_height") return "height of the ground (m)";
   for (const char* start : {"lowest_", "highest_"})
