@@ -26,6 +26,8 @@ class RainSedimentation : public Operator<RainSedimentation> {
     volume_ = d.reads("parcel_volume", "m3");
     rain_ = d.updates("mass_fraction_of_rain_in_air", "1").intensive("water").range(0.0, 1.0);
     drops_ = d.updates("number_of_raindrops_per_mass_of_air", "kg-1").intensive().range(0.0, 1e16);
+    fallen_ = d.accumulates("rainfall_amount", "kg m-2").range(0.0, 1e6);
+    fallen_drops_ = d.accumulates("raindrop_number_at_surface", "m-2").range(0.0, 1e15);
     water_ = d.budget("water");
   }
 
@@ -36,9 +38,8 @@ class RainSedimentation : public Operator<RainSedimentation> {
     const Cells cells(*block.raw().grid);
     Field field(block, cells);
     gather(block, field);
-    const double ground = let_fall(field, step.dt);
+    block.book(water_, -let_fall(block, field, step.dt));
     block.repaired(scatter(block, field));
-    block.book(water_, -ground);
   }
 
  private:
@@ -49,6 +50,8 @@ class RainSedimentation : public Operator<RainSedimentation> {
     std::int64_t levels() const { return grid_.cells[2]; }
     std::int64_t count() const { return columns() * levels(); }
     double depth() const { return grid_.spacing[2]; }
+    /// Of a column's ground, m2; of one metre in y in two dimensions.
+    double area() const { return grid_.spacing[0] * (grid_.dimension == 3 ? grid_.spacing[1] : 1); }
     /// Column-wise, bottom first: a column's cells lie together.
     std::int64_t of(double x, double y, double z) const {
       const std::int64_t column = along(0, x) + grid_.cells[0] * along(1, y);
@@ -88,9 +91,15 @@ class RainSedimentation : public Operator<RainSedimentation> {
     std::span<double> work;
   };
 
-  std::int64_t cell(const Block& block, const Cells& cells, std::int64_t p) const {
-    const double y = block.has(y_) ? block.in(y_)[p] : 0.0;
-    return cells.of(block.in(x_)[p], y, block.in(height_)[p]);
+  /// Where the parcels are.
+  struct Places {
+    const double *x, *y, *z;  // y is null in two dimensions
+    std::size_t cell(const Cells& cells, std::int64_t p) const {
+      return static_cast<std::size_t>(cells.of(x[p], y != nullptr ? y[p] : 0.0, z[p]));
+    }
+  };
+  Places places(const Block& block) const {
+    return {block.in(x_), block.has(y_) ? block.in(y_) : nullptr, block.in(height_)};
   }
 
   /// In the order of the parcels, so that the sums do not depend on the number of threads.
@@ -98,30 +107,32 @@ class RainSedimentation : public Operator<RainSedimentation> {
     const double* volume = block.in(volume_);
     const double* rain = block.in(rain_);
     const double* drops = block.in(drops_);
+    const Places at = places(block);
     for (std::int64_t p = 0; p < block.count(); ++p) {
-      const auto k = static_cast<std::size_t>(cell(block, f.cells, p));
+      const std::size_t k = at.cell(f.cells, p);
       f.volume[k] += volume[p];
       f.mass[k] += volume[p] * rain[p];
       f.number[k] += volume[p] * drops[p];
     }
   }
 
-  /// Returns Σ V q_r that reached the ground.
-  double let_fall(Field& f, double dt) const {
+  /// Adds what reaches the ground to its quantities and returns its Σ V q_r.
+  double let_fall(const Block& block, Field& f, double dt) const {
+    double* fallen = block.accumulator(fallen_);
+    double* fallen_drops = block.accumulator(fallen_drops_);
+    const double per_area = value(density_) / f.cells.area();
     const auto scheme = static_cast<FallSpeedScheme>(choice(scheme_));
     const std::size_t levels = f.levels();
     double ground = 0;
     for (std::size_t column = 0; column < f.size; column += levels) {
       const std::span<double> fast = f.work.first(levels), slow = f.work.subspan(levels, levels);
       const std::span<double> room = f.work.subspan(2 * levels, levels);
-      bool any = false;
       for (std::size_t k = 0; k < levels; ++k) {
         const double mass = f.mass[column + k], number = f.number[column + k];
         FallSpeeds v;
         if (mass > 0)
           v = fall_speeds(scheme, mass / std::max(number, mass / drops::largest_raindrop),
                           value(density_));
-        any = any || mass > 0;
         fast[k] = v.mass * dt / f.cells.depth();
         slow[k] = v.number * dt / f.cells.depth();
       }
@@ -129,7 +140,9 @@ class RainSedimentation : public Operator<RainSedimentation> {
       FallingAmount number{f.number.subspan(column, levels), f.number_kept.subspan(column, levels)};
       fall(mass, fast, f.volume.subspan(column, levels), room);
       fall(number, slow, f.volume.subspan(column, levels), room);
-      if (any) ground += mass.ground;
+      fallen[column / levels] += per_area * mass.ground;
+      fallen_drops[column / levels] += per_area * number.ground;
+      ground += mass.ground;
     }
     return ground;
   }
@@ -139,9 +152,10 @@ class RainSedimentation : public Operator<RainSedimentation> {
   std::uint64_t scatter(const Block& block, const Field& f) const {
     double* rain = block.out(rain_);
     double* drops = block.out(drops_);
+    const Places at = places(block);
     std::uint64_t repairs = 0;
     for (std::int64_t p = 0; p < block.count(); ++p) {
-      const auto k = static_cast<std::size_t>(cell(block, f.cells, p));
+      const std::size_t k = at.cell(f.cells, p);
       if (f.mass[k] == 0 && f.mass_kept[k] == 1 && f.number[k] == 0) continue;
       rain[p] = rain[p] * f.mass_kept[k] + f.mass[k] / f.volume[k];
       const double number = drops[p] * f.number_kept[k] + f.number[k] / f.volume[k];
@@ -169,7 +183,7 @@ class RainSedimentation : public Operator<RainSedimentation> {
             "Khairoutdinov & Kogan 2000: fall speeds, eq. 37");
   }
 
-  Slot x_, y_, height_, volume_, rain_, drops_;
+  Slot x_, y_, height_, volume_, rain_, drops_, fallen_, fallen_drops_;
   Param scheme_, density_;
   Budget water_;
 };
