@@ -135,8 +135,7 @@ void follow_effects(BoundOperator& bound) {
 
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
                             const SurfaceFields& surface, const BoundMesh& mesh,
-                            std::uint32_t stream,
-                            const std::atomic<bool>* stop) {
+                            std::uint32_t stream, const std::atomic<bool>* stop) {
   const std::uint32_t scope = entry.table->op.scope;
   if (scope != PILEUS_LOCAL && scope != PILEUS_GLOBAL) {
     throw Error(ExitCode::plugin,
@@ -148,6 +147,8 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   bound.entry = &entry;
   bound.stream = stream;
   bind_slots(bound, store, surface, mesh);
+  // What follows from nothing is derived again when the parcels are others.
+  if (bound.read_columns.empty()) bound.read_columns.push_back(store.dimension() - 1);
   follow_effects(bound);
   bind_conditions(bound);
   bind_budgets(bound);

@@ -320,11 +320,13 @@ int OperatorTable::find_parameter(std::string_view name) const {
 }
 
 int OperatorTable::find_quantity(std::string_view name) const {
+  int elsewhere = -1;
   for (std::size_t i = 0; i < quantities.size(); ++i) {
-    if (quantities[i].place != PILEUS_PARCEL) continue;
-    if (quantities[i].name != nullptr && name == quantities[i].name) return static_cast<int>(i);
+    if (quantities[i].name == nullptr || name != quantities[i].name) continue;
+    if (quantities[i].place == PILEUS_PARCEL) return static_cast<int>(i);
+    if (elsewhere < 0) elsewhere = static_cast<int>(i);
   }
-  return -1;
+  return elsewhere;
 }
 
 bool holds(const When& when, const double* numbers, const std::uint8_t* effects) {

@@ -68,7 +68,7 @@ template <int D>
 void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
   const std::size_t count = store.size();
   resize_with_margin(splits_, count);
-  if (!metric_.cubic) return mark_splits_in_flat_cells(store);
+  if (!metric_.plain) return mark_splits_in_flat_cells(store);
   if (scratch.capacity() < count + 8) scratch.resize(count);
   double* length = scratch.scratch(0);
   double* ratio = scratch.scratch(1);

@@ -20,13 +20,36 @@ namespace fs = std::filesystem;
 const fs::path plugins = PILEUS_BINARY_DIR "/lib/pileus/plugins";
 using Random = std::mt19937_64;
 
-/// One operator with one of its choices taken; everything else at its default.
+/// One operator with one of its choices taken, and with what that choice needs to mean something;
+/// everything else at its default.
 struct Case {
   std::string id, parameter, choice;
+  std::vector<std::pair<std::string, std::string>> needs;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
   return out << c.id << (c.parameter.empty() ? "" : " " + c.parameter + " = " + c.choice);
+}
+
+/// The choices under which a parameter means something.
+std::vector<std::pair<std::string, std::string>> needs_of(const host::OperatorTable& table,
+                                                          std::size_t parameter) {
+  std::vector<std::pair<std::string, std::string>> needs;
+  for (const host::WhenTerm& term : table.parameter_when[parameter]) {
+    const pileus_parameter& other = table.parameters[term.index];
+    if (other.type != PILEUS_CHOICE) continue;
+    const auto wanted = static_cast<std::size_t>(term.value);
+    needs.emplace_back(other.name, other.choices[term.equal ? wanted : wanted == 0 ? 1 : 0]);
+  }
+  return needs;
+}
+
+/// Operators that look at the mesh need one; their laws are tested in analytic/coupling.
+bool needs_mesh(const host::OperatorTable& table) {
+  return std::any_of(table.quantities.begin(), table.quantities.end(),
+                     [](const pileus_quantity& row) {
+                       return row.place == PILEUS_MESH || row.place == PILEUS_MESH_AT_PARCEL;
+                     });
 }
 
 std::vector<Case> every_case() {
@@ -37,11 +60,14 @@ std::vector<Case> every_case() {
   std::sort(libraries.begin(), libraries.end());
   for (const fs::path& path : libraries)
     for (const host::OperatorTable& table : host::load_library(path).operators) {
-      cases.push_back({table.op.id, "", ""});
-      for (const pileus_parameter& p : table.parameters)
-        if (p.type == PILEUS_CHOICE)
-          for (const char* const* choice = p.choices + 1; *choice != nullptr; ++choice)
-            cases.push_back({table.op.id, p.name, *choice});
+      if (needs_mesh(table)) continue;
+      cases.push_back({table.op.id, "", "", {}});
+      for (std::size_t i = 0; i < table.parameters.size(); ++i) {
+        const pileus_parameter& p = table.parameters[i];
+        if (p.type != PILEUS_CHOICE) continue;
+        for (const char* const* choice = p.choices + 1; *choice != nullptr; ++choice)
+          cases.push_back({table.op.id, p.name, *choice, needs_of(table, i)});
+      }
     }
   return cases;
 }
@@ -51,8 +77,11 @@ std::vector<OperatorEntry> load(const Case& c) {
   scene::OperatorBlock block;
   block.use = c.id;
   block.name = "subject";
-  if (!c.parameter.empty())
-    block.parameters.emplace_back(c.parameter, scene::RawValue{c.choice, false, {}, {}, {}});
+  const auto set = [&](const std::string& name, const std::string& value) {
+    block.parameters.emplace_back(name, scene::RawValue{value, false, {}, {}, {}});
+  };
+  for (const auto& [name, value] : c.needs) set(name, value);
+  if (!c.parameter.empty()) set(c.parameter, c.choice);
   scene.operators.push_back(block);
   scene::Problems problems;
   auto entries = load_operators(scene, {{plugins}}, problems);
@@ -72,10 +101,22 @@ std::vector<std::string> read_quantities(const OperatorEntry& entry) {
   return names;
 }
 
+struct Range {
+  double low, high;
+};
+
+/// What a quantity of air may be: its declared range, no wider than a million, and of temperatures
+/// and water what an atmosphere can hold together. Each quantity alone may be declared wider.
+Range range_of(const parcels::Scalar& scalar) {
+  Range range{std::max(scalar.low, -1e6), std::min(scalar.high, 1e6)};
+  if (scalar.units == "K") range = {std::max(range.low, 200.0), std::min(range.high, 400.0)};
+  if (scalar.budget == "water") range.high = std::min(range.high, 0.02);
+  return range;
+}
+
 /// The ends of the range, zero, and anything between on a linear or logarithmic scale.
 double draw(Random& random, const parcels::Scalar& scalar) {
-  constexpr double widest = 1e6;  // a range without an end is tried up to here
-  const double low = std::max(scalar.low, -widest), high = std::min(scalar.high, widest);
+  const auto [low, high] = range_of(scalar);
   const double u = std::uniform_real_distribution<double>(0, 1)(random);
   switch (random() % 8) {
     case 0:

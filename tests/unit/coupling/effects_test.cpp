@@ -53,7 +53,8 @@ TEST(Effects, that_are_watched_call_no_operator_that_does_nothing_else) {
 }
 
 TEST(Effects, are_named_in_conditions_of_quantities_only_and_by_their_provider) {
-  const host::OperatorTable& table = *entry_of<Condenser>("condenser").table;
+  const coupling::OperatorEntry entry = entry_of<Condenser>("condenser");
+  const host::OperatorTable& table = *entry.table;
   EXPECT_TRUE(host::read_condition("effect.condensation == on", table));
   EXPECT_TRUE(host::read_condition("effect.buoyancy != on", table));
   EXPECT_FALSE(host::read_condition("effect.condensation == off", table));

@@ -189,7 +189,7 @@ TEST(Split, ShapeOfTheCellIsRound) {
   const mesh::Grid<3> grid({8, 8, 8}, {0, 0, 0}, {40, 40, 8});
   const auto criterion = SplitCriterion<3>::make(grid, 4, 2.89);
   const CellMetric<3> metric(grid);
-  EXPECT_FALSE(metric.cubic);
+  EXPECT_FALSE(metric.plain);
   EXPECT_NEAR(metric.stretch[0] * metric.stretch[1] * metric.stretch[2], 1, 1e-14);
   EXPECT_NEAR(metric.stretch[2] / metric.stretch[0], 5, 1e-14);
   const double radius = 0.31 * metric.edge;  // half the longest allowed
