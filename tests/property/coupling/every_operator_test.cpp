@@ -94,8 +94,9 @@ std::vector<std::string> read_quantities(const OperatorEntry& entry) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < entry.table->quantities.size(); ++i) {
     const pileus_quantity& row = entry.table->quantities[i];
-    if ((row.access & PILEUS_CREATE) == 0 && row.nature != PILEUS_DERIVED &&
-        !is_core_quantity(row.name) && holds(entry.table->quantity_when[i], entry.values.numbers()))
+    if (row.place == PILEUS_PARCEL && (row.access & PILEUS_CREATE) == 0 &&
+        row.nature != PILEUS_DERIVED && !is_core_quantity(row.name) &&
+        holds(entry.table->quantity_when[i], entry.values.numbers()))
       names.emplace_back(row.name);
   }
   return names;
