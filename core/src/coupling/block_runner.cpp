@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <string>
 
 namespace pileus::coupling {
@@ -234,7 +234,7 @@ void BlockRunner::find_difference(const Attempt& a, AuditFinding& finding) const
     const double* now = store_.column(a.bound.slots[slot].column) + a.range.begin;
     const double* before = a.work.snapshot.data() + w * a.work.snapshot_stride;
     for (std::size_t i = 0; i < a.range.count; ++i) {
-      if (std::memcmp(now + i, before + i, sizeof(double)) == 0) continue;
+      if (std::bit_cast<std::uint64_t>(now[i]) == std::bit_cast<std::uint64_t>(before[i])) continue;
       std::array<char, 160> text{};
       std::snprintf(text.data(), text.size(), "takes its %s from %.17g to %.17g",
                     a.bound.entry->table->quantities[slot].name, before[i], now[i]);

@@ -210,7 +210,8 @@ TEST_P(EveryOperator, changes_a_budget_by_its_declared_sources_alone) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed << ", dt = " << dt);
     Run run = start(seed, true);
     for (std::uint64_t number = 0; number < 3; ++number) step(run, number, dt);
-    for (const OperatorBudget& budget : run.sequence->ledger().operators.at(0).budgets) {
+    const Ledger ledger = run.sequence->ledger();
+    for (const OperatorBudget& budget : ledger.operators.at(0).budgets) {
       // Every parcel's change rounds by a few units in the last place of what it holds.
       double held = 0;
       for (std::size_t s = 0; s < run.store->scalars().size(); ++s)
