@@ -1,0 +1,36 @@
+# Largest time-step factor alpha with which scenes stay accurate and with which they survive, from the
+# table that docs/figures/stability_map.py writes. Run from the root of the source tree:
+#   gnuplot docs/figures/stability_map.gp
+set encoding utf8
+data = 'docs/figures/stability_map.csv'
+set datafile separator ','
+set style data points
+set key outside top center horizontal maxrows 2
+set logscale y
+set yrange [0.04:14]
+set ytics (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 10)
+set grid ytics lc rgb '#dddddd'
+set ylabel 'time-step factor α'
+set xtics rotate by -25 nomirror font ',10'
+set bmargin 7
+set rmargin 6
+stats data skip 1 using 2 nooutput
+scenes = int(STATS_max) + 1
+set xrange [-0.6:scenes - 0.4]
+set arrow from graph 0, first 0.2 to graph 1, first 0.2 nohead dt 3 lc rgb '#888888'
+set label 'default' at graph 1.005, first 0.2 font ',9' tc rgb '#666666'
+plot_all = "\
+  data using ($2-0.24):(strcol(3) eq 'rk4' && strcol(4) eq 'exponential' ? $5 : NaN):xtic(1) pt 7 ps 1.3 lc rgb '#1b6ca8' title 'RK4, exponential: accurate', \
+  data using ($2-0.24):(strcol(3) eq 'rk4' && strcol(4) eq 'exponential' ? $6 : NaN) pt 6 ps 1.8 lw 1.5 lc rgb '#1b6ca8' title 'survives', \
+  data using ($2-0.08):(strcol(3) eq 'rk3' && strcol(4) eq 'exponential' ? $5 : NaN) pt 5 ps 1.2 lc rgb '#d1762d' title 'RK3, exponential: accurate', \
+  data using ($2-0.08):(strcol(3) eq 'rk3' && strcol(4) eq 'exponential' ? $6 : NaN) pt 4 ps 1.6 lw 1.5 lc rgb '#d1762d' title 'survives', \
+  data using ($2+0.08):(strcol(3) eq 'rk4' && strcol(4) eq 'runge_kutta' ? $5 : NaN) pt 9 ps 1.3 lc rgb '#3a8f5d' title 'RK4 on dB/dt: accurate', \
+  data using ($2+0.08):(strcol(3) eq 'rk4' && strcol(4) eq 'runge_kutta' ? $6 : NaN) pt 8 ps 1.7 lw 1.5 lc rgb '#3a8f5d' title 'survives', \
+  data using ($2+0.24):(strcol(3) eq 'rk3' && strcol(4) eq 'runge_kutta' ? $5 : NaN) pt 11 ps 1.3 lc rgb '#a23b72' title 'RK3 on dB/dt: accurate', \
+  data using ($2+0.24):(strcol(3) eq 'rk3' && strcol(4) eq 'runge_kutta' ? $6 : NaN) pt 10 ps 1.7 lw 1.5 lc rgb '#a23b72' title 'survives'"
+set terminal svg size 1000,560 font 'Helvetica,12'
+set output 'docs/images/stability_map.svg'
+eval 'plot '.plot_all
+set terminal pngcairo size 1000,560 font 'Helvetica,11'
+set output 'docs/images/stability_map.png'
+eval 'plot '.plot_all
