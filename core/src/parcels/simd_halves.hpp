@@ -3,19 +3,21 @@
 #pragma once
 #include <immintrin.h>
 
+#include "parcels/simd_pairwise.hpp"
+
 namespace pileus::PILEUS_ISA {
 
 typedef double Half __attribute__((vector_size(32), may_alias));
 typedef long HalfMask __attribute__((vector_size(32), may_alias));  // all ones where true
 
 struct [[gnu::may_alias]] Mask {
-  HalfMask low, high;
-  long operator[](std::size_t lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
+  HalfMask first, second;
+  long operator[](std::size_t lane) const { return lane < 4 ? first[lane] : second[lane - 4]; }
 };
 
 struct [[gnu::may_alias]] Pack {
-  Half low, high;
-  double operator[](std::size_t lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
+  Half first, second;
+  double operator[](std::size_t lane) const { return lane < 4 ? first[lane] : second[lane - 4]; }
   double& operator[](std::size_t lane) { return reinterpret_cast<double*>(this)[lane]; }
 };
 
@@ -23,70 +25,33 @@ static inline Pack load(const double* p) {
   return {_mm256_loadu_pd(p), _mm256_loadu_pd(p + 4)};
 }
 static inline void store(double* p, Pack x) {
-  _mm256_storeu_pd(p, x.low);
-  _mm256_storeu_pd(p + 4, x.high);
+  _mm256_storeu_pd(p, x.first);
+  _mm256_storeu_pd(p + 4, x.second);
 }
 static inline Pack broadcast(double x) {
   const Half half = _mm256_set1_pd(x);
   return {half, half};
 }
 
-#define PILEUS_ARITHMETIC(OP)                               \
-  static inline Pack operator OP(Pack a, Pack b) {          \
-    return {a.low OP b.low, a.high OP b.high};              \
-  }                                                         \
-  static inline Pack operator OP(Pack a, double b) {        \
-    return {a.low OP b, a.high OP b};                       \
-  }                                                         \
-  static inline Pack operator OP(double a, Pack b) {        \
-    return {a OP b.low, a OP b.high};                       \
-  }                                                         \
-  template <class T>                                        \
-  static inline Pack& operator OP##=(Pack& a, const T& b) { \
-    return a = a OP b;                                      \
-  }
-#define PILEUS_COMPARISON(OP)                        \
-  static inline Mask operator OP(Pack a, Pack b) {   \
-    return {a.low OP b.low, a.high OP b.high};       \
-  }                                                  \
-  static inline Mask operator OP(Pack a, double b) { \
-    return {a.low OP b, a.high OP b};                \
-  }
-PILEUS_ARITHMETIC(+)
-PILEUS_ARITHMETIC(-)
-PILEUS_ARITHMETIC(*)
-PILEUS_ARITHMETIC(/)
-PILEUS_COMPARISON(<)
-PILEUS_COMPARISON(<=)
-PILEUS_COMPARISON(>)
-PILEUS_COMPARISON(>=)
-#undef PILEUS_ARITHMETIC
-#undef PILEUS_COMPARISON
-
-static inline Pack operator-(Pack a) {
-  return {-a.low, -a.high};
-}
-static inline Mask operator&(Mask a, Mask b) {
-  return {a.low & b.low, a.high & b.high};
-}
+PILEUS_PAIRWISE_OPERATORS(Pack, Mask)
 
 static inline Pack select(Mask m, Pack a, Pack b) {
-  return {m.low ? a.low : b.low, m.high ? a.high : b.high};
+  return {m.first ? a.first : b.first, m.second ? a.second : b.second};
 }
 
 static inline Pack square_root(Pack x) {
-  return {_mm256_sqrt_pd(x.low), _mm256_sqrt_pd(x.high)};
+  return {_mm256_sqrt_pd(x.first), _mm256_sqrt_pd(x.second)};
 }
 
 /// Largest whole number not above x.
 static inline Pack round_down(Pack x) {
-  return {_mm256_floor_pd(x.low), _mm256_floor_pd(x.high)};
+  return {_mm256_floor_pd(x.first), _mm256_floor_pd(x.second)};
 }
 /// Largest integer not above x, as 32-bit integers; x must lie within ±2^31, other values give some
 /// integer.
 static inline IntPack floor_to_int(Pack x) {
   const Pack whole = round_down(x);
-  const __m128i low = _mm256_cvttpd_epi32(whole.low), high = _mm256_cvttpd_epi32(whole.high);
+  const __m128i low = _mm256_cvttpd_epi32(whole.first), high = _mm256_cvttpd_epi32(whole.second);
   return reinterpret_cast<IntPack>(_mm256_set_m128i(high, low));
 }
 static inline Pack to_pack(IntPack i) {
@@ -103,7 +68,7 @@ static inline unsigned zero_lanes(IntPack i) {
 
 /// Does the condition hold in any lane?
 static inline bool any(Mask m) {
-  const HalfMask either = m.low | m.high;
+  const HalfMask either = m.first | m.second;
   return _mm256_movemask_pd(reinterpret_cast<__m256d>(either)) != 0;
 }
 
@@ -119,14 +84,14 @@ static inline void transpose(Half& a, Half& b, Half& c, Half& d) {
 
 /// Transposes an 8×8 block held in eight packs: its four quarters, two of which change places.
 static inline void transpose(Pack (&r)[8]) {
-  transpose(r[0].low, r[1].low, r[2].low, r[3].low);
-  transpose(r[0].high, r[1].high, r[2].high, r[3].high);
-  transpose(r[4].low, r[5].low, r[6].low, r[7].low);
-  transpose(r[4].high, r[5].high, r[6].high, r[7].high);
+  transpose(r[0].first, r[1].first, r[2].first, r[3].first);
+  transpose(r[0].second, r[1].second, r[2].second, r[3].second);
+  transpose(r[4].first, r[5].first, r[6].first, r[7].first);
+  transpose(r[4].second, r[5].second, r[6].second, r[7].second);
   for (int i = 0; i < 4; ++i) {
-    const Half kept = r[i].high;
-    r[i].high = r[i + 4].low;
-    r[i + 4].low = kept;
+    const Half kept = r[i].second;
+    r[i].second = r[i + 4].first;
+    r[i + 4].first = kept;
   }
 }
 

@@ -2,6 +2,7 @@
 // for each other's results only half as long. Bit for bit the same as one after the other.
 #pragma once
 #include "parcels/simd.hpp"
+#include "parcels/simd_pairwise.hpp"
 
 namespace pileus::PILEUS_ISA {
 
@@ -12,40 +13,7 @@ struct Twin {
   Pack first, second;
 };
 
-#define PILEUS_ARITHMETIC(OP)                          \
-  static inline Twin operator OP(Twin a, Twin b) {     \
-    return {a.first OP b.first, a.second OP b.second}; \
-  }                                                    \
-  static inline Twin operator OP(Twin a, double b) {   \
-    return {a.first OP b, a.second OP b};              \
-  }                                                    \
-  static inline Twin operator OP(double a, Twin b) {   \
-    return {a OP b.first, a OP b.second};              \
-  }
-#define PILEUS_COMPARISON(OP)                            \
-  static inline TwinMask operator OP(Twin a, Twin b) {   \
-    return {a.first OP b.first, a.second OP b.second};   \
-  }                                                      \
-  static inline TwinMask operator OP(Twin a, double b) { \
-    return {a.first OP b, a.second OP b};                \
-  }
-PILEUS_ARITHMETIC(+)
-PILEUS_ARITHMETIC(-)
-PILEUS_ARITHMETIC(*)
-PILEUS_ARITHMETIC(/)
-PILEUS_COMPARISON(<)
-PILEUS_COMPARISON(<=)
-PILEUS_COMPARISON(>)
-PILEUS_COMPARISON(>=)
-#undef PILEUS_ARITHMETIC
-#undef PILEUS_COMPARISON
-
-static inline Twin operator-(Twin a) {
-  return {-a.first, -a.second};
-}
-static inline TwinMask operator&(TwinMask a, TwinMask b) {
-  return {a.first & b.first, a.second & b.second};
-}
+PILEUS_PAIRWISE_OPERATORS(Twin, TwinMask)
 
 static inline Twin select(TwinMask m, Twin a, Twin b) {
   return {select(m.first, a.first, b.first), select(m.second, a.second, b.second)};
