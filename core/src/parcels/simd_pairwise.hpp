@@ -2,6 +2,8 @@
 // for the Pack of two registers and for the Twin of two Packs.
 #pragma once
 
+// A type and an operator cannot stand in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define PILEUS_PAIRWISE_ARITHMETIC(PAIR, OP)                \
   static inline PAIR operator OP(PAIR a, PAIR b) {          \
     return {a.first OP b.first, a.second OP b.second};      \
@@ -40,3 +42,4 @@
   static inline MASK operator&(MASK a, MASK b) {     \
     return {a.first & b.first, a.second & b.second}; \
   }
+// NOLINTEND(bugprone-macro-parentheses)
