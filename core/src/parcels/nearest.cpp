@@ -3,18 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/vector_clones.hpp"
+
 namespace pileus::parcels {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t crowd = 64;      // parcels in a cell from which a tree pays
 constexpr std::uint32_t leaf_size = 12;  // parcels that are compared one by one
+constexpr std::uint32_t batch = 64;      // parcels whose distances are taken at once
+
+/// Adds to squared distances what one direction contributes.
+PILEUS_VECTOR_CLONES
+void add_squares(const double* coordinate, const std::uint32_t* parcel, std::uint32_t count,
+                 double centre, double extent, double stretch, double* distance) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double d = stretch * minimum_image(coordinate[parcel[i]] - centre, extent);
+    distance[i] += d * d;
+  }
+}
 
 }  // namespace
-
-double minimum_image(double difference, double extent) {
-  return difference - extent * std::round(difference / extent);
-}
 
 template <int D>
 void NearestParcel<D>::prepare(const Store& store, const CellOrder<D>& order) {
@@ -84,7 +93,7 @@ double NearestParcel<D>::least_distance(std::uint32_t p, const Node& node) const
     double low = node.low[a] - x, high = node.high[a] - x;
     if (a < D - 1) {
       const double extent = grid_.extent[a];
-      if (std::round(low / extent) != std::round(high / extent)) continue;
+      if (periods_between(low, extent) != periods_between(high, extent)) continue;
       low = minimum_image(low, extent);
       high = minimum_image(high, extent);
     }
@@ -107,17 +116,18 @@ void NearestParcel<D>::consider(std::uint32_t p, std::uint32_t begin, std::uint3
                                 Best& best) const {
   const std::vector<std::uint32_t>& ranked = crowded_ ? ranked_ : order_->order();
   const std::uint64_t* uid = store_->uid();
-  for (std::uint32_t s = begin; s < end; ++s) {
-    const std::uint32_t q = ranked[s];
-    if (q == p) continue;
-    double distance = 0;
-    for (int a = 0; a < D; ++a) {
-      double d = store_->position(a)[q] - store_->position(a)[p];
-      if (a < D - 1) d = minimum_image(d, grid_.extent[a]);
-      d *= metric_.stretch[std::size_t(a)];
-      distance += d * d;
-    }
-    if (may_improve(distance, uid[q], best)) best = {distance, q};
+  for (std::uint32_t first = begin; first < end; first += batch) {
+    const std::uint32_t count = std::min(batch, end - first);
+    const std::uint32_t* parcel = ranked.data() + first;
+    double distance[batch] = {};
+    for (int a = 0; a < D; ++a)
+      add_squares(store_->position(a), parcel, count, store_->position(a)[p],
+                  a < D - 1 ? grid_.extent[a] : infinity, metric_.stretch[std::size_t(a)],
+                  distance);
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (distance[i] <= best.distance && parcel[i] != p &&
+          may_improve(distance[i], uid[parcel[i]], best))
+        best = {distance[i], parcel[i]};
   }
 }
 
@@ -141,30 +151,66 @@ void NearestParcel<D>::descend(std::uint32_t p, std::uint32_t place, Best& best)
 }
 
 template <int D>
-std::uint32_t NearestParcel<D>::of(std::uint32_t p) const {
-  int nearest_node[D];
-  for (int a = 0; a < D; ++a) {
-    const double xi = (store_->position(a)[p] - grid_.lower[a]) * grid_.inverse_spacing[a];
-    // Nowhere: not a number, or so far out that distances mean nothing. Searching would take long.
-    if (!(std::abs(xi) < 1e9)) return nobody;
-    nearest_node[a] = static_cast<int>(std::lround(xi));
+void NearestParcel<D>::consider_cell(std::uint32_t p, const std::array<int, D>& cell,
+                                     Best& best) const {
+  const int nx = grid_.nx(), ny = grid_.ny();
+  const int i = cell[0], j = D == 3 ? cell[1] : 0;
+  const std::size_t key = order_->key((i % nx + nx) % nx, (j % ny + ny) % ny, cell[D - 1]);
+  if (!crowded_ || root_[key] == 0)
+    consider(p, order_->first(key), order_->first(key + 1), best);
+  else
+    descend(p, root_[key] - 1, best);
+}
+
+/// The parcel's own cell first: what it holds is often nearer than anything beyond its faces.
+template <int D>
+void NearestParcel<D>::search_around(std::uint32_t p, const std::array<double, D>& xi,
+                                     const std::array<int, D>& node, Best& best) const {
+  constexpr double rounding = 1e-9;  // of places measured in cells, far more than theirs
+  std::array<int, D> own;
+  std::array<double, D> beyond;  // least squared distance of what lies beyond the nearest face
+  for (std::size_t a = 0; a < D; ++a) {
+    own[a] = xi[a] >= node[a] ? node[a] : node[a] - 1;
+    const double cells = std::max(0.0, std::abs(xi[a] - node[a]) - rounding);
+    const double length = cells * grid_.spacing[a] * metric_.stretch[a];
+    beyond[a] = length * length * (1 - rounding);
   }
-  const int ci = nearest_node[0], cj = D == 3 ? nearest_node[1] : 0, ck = nearest_node[D - 1];
-  const int nx = grid_.nx(), ny = grid_.ny(), nz = grid_.nz();
+  for (unsigned n = 0; n < 1u << D; ++n) {
+    std::array<int, D> cell;
+    double least = 0;
+    for (std::size_t a = 0; a < D; ++a) {
+      const bool other = n >> a & 1u;
+      cell[a] = other ? 2 * node[a] - 1 - own[a] : own[a];
+      least += other ? beyond[a] : 0.0;
+    }
+    if (cell[D - 1] < 0 || cell[D - 1] >= grid_.nz() || least > best.distance) continue;
+    consider_cell(p, cell, best);
+  }
+}
+
+template <int D>
+std::uint32_t NearestParcel<D>::of(std::uint32_t p) const {
+  std::array<int, D> node;
+  std::array<double, D> xi;
+  for (std::size_t a = 0; a < D; ++a) {
+    xi[a] = (store_->position(int(a))[p] - grid_.lower[a]) * grid_.inverse_spacing[a];
+    // Nowhere: not a number, or so far out that distances mean nothing. Searching would take long.
+    if (!(std::abs(xi[a]) < 1e9)) return nobody;
+    node[a] = static_cast<int>(std::lround(xi[a]));
+  }
   Best best;
-  const auto consider_cell = [&](int i, int j, int k) {
-    const std::size_t key = order_->key((i % nx + nx) % nx, (j % ny + ny) % ny, k);
-    if (!crowded_ || root_[key] == 0)
-      consider(p, order_->first(key), order_->first(key + 1), best);
-    else
-      descend(p, root_[key] - 1, best);
-  };
-  const int widest = std::max({nx, ny, nz}) + 1;
-  for (int radius = 1; best.parcel == nobody && radius <= widest; ++radius)
+  search_around(p, xi, node, best);
+  const int ci = node[0], cj = D == 3 ? node[1] : 0, ck = node[D - 1];
+  const int nz = grid_.nz(), widest = std::max({grid_.nx(), grid_.ny(), nz}) + 1;
+  for (int radius = 2; best.parcel == nobody && radius <= widest; ++radius)
     for (int j = D == 3 ? cj - radius : 0; j < (D == 3 ? cj + radius : 1); ++j)
       for (int i = ci - radius; i < ci + radius; ++i)
-        for (int k = std::max(ck - radius, 0); k < std::min(ck + radius, nz); ++k)
-          consider_cell(i, j, k);
+        for (int k = std::max(ck - radius, 0); k < std::min(ck + radius, nz); ++k) {
+          if constexpr (D == 3)
+            consider_cell(p, {i, j, k}, best);
+          else
+            consider_cell(p, {i, k}, best);
+        }
   return best.parcel;
 }
 

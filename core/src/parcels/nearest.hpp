@@ -1,6 +1,7 @@
 // The parcel nearest to another by distance of centres in the metric of the cell, quick however
 // many share a cell.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,8 +13,17 @@
 
 namespace pileus::parcels {
 
-/// Shortest way around a periodic direction.
-double minimum_image(double difference, double extent);
+/// How many periods lie between two points less than one and a half apart: −1, 0 or 1.
+inline int periods_between(double difference, double extent) {
+  return int(difference >= 0.5 * extent) - int(difference <= -0.5 * extent);
+}
+
+/// Shortest way around a periodic direction, between points of the domain.
+inline double minimum_image(double difference, double extent) {
+  return difference >= 0.5 * extent    ? difference - extent
+         : difference <= -0.5 * extent ? difference + extent
+                                       : difference;
+}
 
 template <int D>
 class NearestParcel {
@@ -47,6 +57,9 @@ class NearestParcel {
   void build(std::uint32_t begin, std::uint32_t end);
   double least_distance(std::uint32_t p, const Node& node) const;
   void consider(std::uint32_t p, std::uint32_t begin, std::uint32_t end, Best& best) const;
+  void consider_cell(std::uint32_t p, const std::array<int, D>& cell, Best& best) const;
+  void search_around(std::uint32_t p, const std::array<double, D>& xi,
+                     const std::array<int, D>& node, Best& best) const;
   void descend(std::uint32_t p, std::uint32_t node, Best& best) const;
   bool may_improve(double distance, std::uint64_t uid, const Best& best) const;
 
