@@ -18,7 +18,8 @@ def files(root, *folders, suffixes=None):
                 n for n in folder_names
                 if n not in NOT_OURS and (not n.startswith(".") or n == ".ci")
             ]
-            found += [Path(path, n) for n in names]
+            # In a linked worktree .git is a file that names a path of the machine.
+            found += [Path(path, n) for n in names if n != ".git"]
     return sorted(p for p in found if suffixes is None or p.suffix in suffixes)
 
 

@@ -135,12 +135,12 @@ Soundness::Filling Soundness::count_by_cell(const Simulation& simulation) {
   const pileus_grid grid = simulation.plugin_grid();
   const parcels::Store& store = simulation.store();
   const int dimension = simulation.dimension();
-  const int nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
+  const auto nx = int(grid.cells[0]), ny = int(grid.cells[1]), nz = int(grid.cells[2]);
   count_.assign(std::size_t(nx) * std::size_t(ny) * std::size_t(nz), 0);
   const auto cell = [&](int axis, int direction, std::size_t p) {
     const auto index = axis == 2 ? parcels::vertical_cell : parcels::periodic_cell;
     return index(store.position(direction)[p], grid.origin[axis], 1 / grid.spacing[axis],
-                 grid.cells[axis]);
+                 int(grid.cells[axis]));
   };
   Filling filling;
   for (std::size_t p = 0; p < store.size(); ++p) {
@@ -149,8 +149,8 @@ Soundness::Filling Soundness::count_by_cell(const Simulation& simulation) {
       const int axis = d == dimension - 1 ? 2 : d;
       const double offset = store.position(d)[p] - grid.origin[axis];
       // Rounded as the domain's own upper end is.
-      inside =
-          inside && offset >= 0 && offset <= grid.spacing[axis] * grid.cells[axis] * (1 + 1e-15);
+      inside = inside && offset >= 0 &&
+               offset <= grid.spacing[axis] * double(grid.cells[axis]) * (1 + 1e-15);
     }
     if (!inside) ++filling.outside;
     const int i = cell(0, 0, p), j = dimension == 3 ? cell(1, 1, p) : 0;

@@ -39,7 +39,8 @@ TEST(Record, AnEarlierTimeIsInterpolatedAndEndsTheStatistics) {
 
 TEST(Record, RelativeRiseIsMeasuredFromTheFirstValueToTheLargest) {
   Record record({{"parcels", "1", "", false}});
-  for (const double value : {4.0, 3.0, 10.0, 5.0}) record.append(record.times().size(), {value});
+  for (const double value : {4.0, 3.0, 10.0, 5.0})
+    record.append(double(record.times().size()), {value});
   EXPECT_EQ(record.statistic(0, "relative_rise", {}), 1.5);
   EXPECT_EQ(record.statistic(0, "relative_rise", 1.0), 0.0);
 }
