@@ -22,9 +22,9 @@ for file in "$@"; do
         grep -q "^$name $scheme $shape $alpha " "$data" && continue
         results=$(mktemp -d)
         "$program" check "$file" --quiet --threads "${THREADS:-1}" --out "$results/run" \
-          --set time.step.alpha="$alpha" --set time.step.courant=10 --set output.fields.every=0 \
-          --set time.scheme=$scheme \
-          --set numerics.shape_integrator=$shape >"$results/log" 2>&1
+          --set time.step.alpha="$alpha" --set time.step.strain_alpha="$alpha" \
+          --set time.step.courant=10 --set output.fields.every=0 \
+          --set time.scheme=$scheme --set numerics.shape_integrator=$shape >"$results/log" 2>&1
         code=$?
         rm -rf "$results"
         case $code in

@@ -13,7 +13,7 @@ TimeStep choose_time_step(const TimeStepControl& control, const mesh::Grid<D>& g
     // Multiplied out, so that a rate of zero needs no special case.
     if (rate * step.seconds > factor) step = {factor / rate, name};
   };
-  limit(flow.strain, control.alpha, "strain");
+  limit(flow.strain, control.strain_alpha, "strain");
   limit(std::sqrt(flow.buoyancy_gradient), control.alpha, "stratification");
   for (int d = 0; d < D; ++d)
     limit(flow.speed[static_cast<std::size_t>(d)] * grid.inverse_spacing[d], control.courant,

@@ -10,7 +10,8 @@
 namespace pileus::dynamics {
 
 struct TimeStepControl {
-  double alpha = 0.2;           // Δt ≤ alpha / largest strain rate, alpha / largest √|∇b|
+  double alpha = 0.25;          // Δt ≤ alpha / largest √|∇b|, alpha / f
+  double strain_alpha = 0.5;    // Δt ≤ strain_alpha / largest strain rate
   double courant = 1.0;         // Δt ≤ courant · Δ/|u| in every direction
   double largest = 0;           // s; cap, needed by a fluid at rest. Must be positive
   std::optional<double> fixed;  // s; replaces all limits
@@ -21,9 +22,9 @@ struct TimeStep {
   std::string_view limiter;  // "strain", "stratification", "advection", "rotation", "cap", "fixed"
 };
 
-/// The step allowed by the flow. The strain and stratification limits are those of the method's
-/// authors; the advective one keeps a parcel from crossing more than `courant` cells in a step, and
-/// the rotational one resolves the inertial period 2π/f.
+/// The step allowed by the flow. The strain and stratification limits have the form of the method's
+/// authors, who use one factor for both; the advective one keeps a parcel from crossing more than
+/// `courant` cells in a step, and the rotational one resolves the inertial period 2π/f.
 template <int D>
 TimeStep choose_time_step(const TimeStepControl& control, const mesh::Grid<D>& grid,
                           const mesh::FlowSummary& flow, double coriolis);

@@ -32,7 +32,7 @@ mesh::Grid<D> make_grid(const scene::Domain& domain) {
 dynamics::TimeStepControl make_step_control(const scene::TimeControl& time) {
   // A fluid at rest limits nothing; then the run is one step per output, or the cap.
   const double cap = time.largest > 0 ? time.largest : std::max(time.end, 1e-300);
-  return {time.alpha, time.courant, cap, time.fixed};
+  return {time.alpha, time.strain_alpha.value(), time.courant, cap, time.fixed};
 }
 
 /// Nodes and parcels are counted in 32 bits, parcels with room for their number to grow fourfold.

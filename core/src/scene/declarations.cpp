@@ -177,10 +177,15 @@ const Table& step_table() {
       .path = "time.step",
       .doc = "What limits the time step.",
       .keys = {value("alpha", &TimeControl::alpha, "1",
-                     "The step is at most alpha over the largest of strain rate and sqrt(|grad "
-                     "buoyancy|).")
+                     "The step is at most alpha over the largest of sqrt(|grad buoyancy|) and the "
+                     "planetary vorticity.")
                    .above(0)
                    .at_most(10),
+               value("strain_alpha", &TimeControl::strain_alpha, "1",
+                     "The step is at most strain_alpha over the largest strain rate; default: "
+                     "twice alpha, or alpha with numerics.shape_integrator: runge_kutta.")
+                   .above(0)
+                   .at_most(20),
                value("courant", &TimeControl::courant, "1",
                      "The step is at most courant times the mesh spacing over the speed.")
                    .above(0)

@@ -66,7 +66,9 @@ enum class RungeKutta { order3_stages3, order4_stages5 };
 struct TimeControl {
   double end = 0;  // s
   RungeKutta scheme = RungeKutta::order4_stages5;
-  double alpha = 0.2;           // dt ≤ alpha/max(strain rate, sqrt|grad b|)
+  double alpha = 0.25;  // dt ≤ alpha/max(sqrt|grad b|, f)
+  std::optional<double>
+      strain_alpha;             // dt ≤ strain_alpha/strain rate; there once the scene is read
   double courant = 1.0;         // dt ≤ courant·Δ/|u|
   double largest = 0;           // s; cap on dt, 0: none given (the end time caps it)
   std::optional<double> fixed;  // s; replaces every limit

@@ -15,18 +15,20 @@ const mesh::Grid<3> grid({10, 10, 10}, {0, 0, 0}, {10, 20, 5});
 
 TimeStep chosen(const mesh::FlowSummary& flow, double coriolis = 0) {
   TimeStepControl control;
+  control.alpha = 0.2;
+  control.strain_alpha = 0.3;
   control.largest = 100;
   return choose_time_step<3>(control, grid, flow, coriolis);
 }
 
-// Dossier 6.2: α/γ_max, α/N_max; B.1 first step of Taylor–Green 0.1/1; a fluid at rest is capped.
+// Dossier 6.2: α_s/γ_max, α_b/N_max; a fluid at rest is capped.
 TEST(TimeStep, TheTightestLimitWins) {
   EXPECT_EQ(chosen({}).limiter, "cap");
   EXPECT_EQ(chosen({}).seconds, 100);
   mesh::FlowSummary flow;
   flow.strain = 1;
   EXPECT_EQ(chosen(flow).limiter, "strain");
-  EXPECT_DOUBLE_EQ(chosen(flow).seconds, 0.2);
+  EXPECT_DOUBLE_EQ(chosen(flow).seconds, 0.3);
   flow.buoyancy_gradient = 4;
   EXPECT_EQ(chosen(flow).limiter, "stratification");
   EXPECT_DOUBLE_EQ(chosen(flow).seconds, 0.1);
