@@ -18,11 +18,10 @@ template <int D>
 class MeshAccessOf final : public coupling::MeshAccess {
  public:
   /// Parts of a simulation; they must outlive this. The transport may be built later, but before
-  /// the flow is asked for.
+  /// anything is asked for.
   struct Parts {
     const mesh::Grid<D>& grid;
     parcels::Store& store;
-    parcels::Deposit<D>& deposit;
     const std::vector<std::size_t>& tile_begin;
     const std::unique_ptr<dynamics::ParcelMotion<D>>& transport;
     const dynamics::MeanWind& wind;
@@ -35,7 +34,7 @@ class MeshAccessOf final : public coupling::MeshAccess {
 
   void deposit(std::span<const double* const> values, double* field) override {
     values_.assign(values.begin(), values.end());
-    in_.deposit.means(in_.store, in_.tile_begin, values_, {}, field);
+    in_.transport->deposit().means(in_.store, in_.tile_begin, values_, {}, field);
   }
   void mirror(double* field) const override { parcels::mirror_halo(in_.grid, field); }
   void interpolate(const double* field, std::span<double* const> values) const override {

@@ -87,6 +87,12 @@ std::vector<output::Variable> profile_variables(const std::vector<output::Variab
   return variables;
 }
 
+std::vector<std::string> names_of(const std::vector<output::Variable>& variables) {
+  std::vector<std::string> names;
+  for (const output::Variable& variable : variables) names.push_back(variable.name);
+  return names;
+}
+
 output::Encoding encoding_of(const scene::OutputControl& control) {
   return {false, control.compress, control.mantissa_bits};
 }
@@ -178,9 +184,7 @@ void OutputStreams::write_due(Simulation& simulation, bool last) {
 }
 
 void OutputStreams::write_fields(Simulation& simulation) {
-  values_.resize(field_variables_.size());
-  for (std::size_t v = 0; v < field_variables_.size(); ++v)
-    simulation.grid_field(field_variables_[v].name, values_[v]);
+  simulation.grid(names_of(field_variables_), values_);
   for (const output::Variable& variable : ground_variables_)
     values_.push_back(surface_.values(static_cast<std::size_t>(surface_.find(variable.name))));
   fields_->append(simulation.time(), values_);
@@ -198,23 +202,29 @@ void OutputStreams::write_profiles(Simulation& simulation) {
     }
     return mean;
   };
-  std::vector<double> w, b, field;
-  simulation.grid_field("z_velocity", w);
-  simulation.grid_field("buoyancy", b);
+  const auto is_product = [](const std::string& name) {
+    return name == "z_velocity_variance" || name == "buoyancy_flux";
+  };
+  std::vector<std::string> names = names_of(profile_variables_);
+  std::erase_if(names, is_product);
+  const std::size_t means = names.size();
+  names.insert(names.end(), {"z_velocity", "buoyancy"});
+  std::vector<std::vector<double>> fields;
+  simulation.grid(names, fields);
+  const std::vector<double>&w = fields[means], &b = fields[means + 1];
   const std::vector<double> mean_w = mean_of_product(w, nullptr),
                             mean_b = mean_of_product(b, nullptr);
   values_.resize(profile_variables_.size());
-  for (std::size_t v = 0; v < profile_variables_.size(); ++v) {
+  for (std::size_t v = 0, next = 0; v < profile_variables_.size(); ++v) {
     const std::string& name = profile_variables_[v].name;
-    const bool variance = name == "z_velocity_variance";
-    if (variance || name == "buoyancy_flux") {
-      values_[v] = mean_of_product(w, variance ? &w : &b);
-      for (std::size_t k = 0; k < levels; ++k)
-        values_[v][k] -= mean_w[k] * (variance ? mean_w[k] : mean_b[k]);
-    } else {
-      simulation.grid_field(name, field);
-      values_[v] = mean_of_product(field, nullptr);
+    if (!is_product(name)) {
+      values_[v] = mean_of_product(fields[next++], nullptr);
+      continue;
     }
+    const bool variance = name == "z_velocity_variance";
+    values_[v] = mean_of_product(w, variance ? &w : &b);
+    for (std::size_t k = 0; k < levels; ++k)
+      values_[v][k] -= mean_w[k] * (variance ? mean_w[k] : mean_b[k]);
   }
   profiles_->append(simulation.time(), values_);
 }

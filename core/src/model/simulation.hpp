@@ -85,10 +85,19 @@ class Simulation {
   virtual std::vector<output::Axis> ground_axes() const = 0;
   /// Nodes in file order (z slowest, x fastest): horizontal count times n_z + 1.
   virtual std::size_t node_count() const = 0;
-  /// Gridded field of the evaluated state in file order: "volume", velocity and vorticity
-  /// components, "buoyancy", or the volume-weighted mean of any scalar of the store.
-  virtual void grid_field(const std::string& name, std::vector<double>& values) = 0;
-  /// Names grid_field() knows.
+  /// Gridded fields of the evaluated state in file order: "volume", velocity and vorticity
+  /// components, "buoyancy", or the volume-weighted mean of any scalar of the store. Several at
+  /// once need fewer passes over the parcels.
+  virtual void grid(const std::vector<std::string>& names,
+                    std::vector<std::vector<double>>& values) = 0;
+  /// One of them.
+  void grid_field(const std::string& name, std::vector<double>& values) {
+    std::vector<std::vector<double>> one(1);
+    one.front().swap(values);
+    grid({name}, one);
+    values.swap(one.front());
+  }
+  /// Names grid() knows.
   virtual std::vector<output::Variable> grid_fields() const = 0;
   /// Volume fraction error of the evaluated state, over all nodes.
   virtual parcels::VolumeError volume_error() const = 0;

@@ -94,16 +94,15 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
                                      "the reference buoyancy", grid_.bottom(), grid_.top(),
                                      reference_points_per_cell * grid_.nz() + 1)),
       buoyancy_(physics),
-      deposit_(grid_),
-      upkeep_(grid_, deposit_.tiling(),
+      tiling_(grid_),
+      upkeep_(grid_, tiling_,
               scene.parcels.merging ? grid_.cell_volume() / scene.parcels.min_volume_ratio : 0.0,
               split_criterion(grid_, scene.parcels)),
       correction_(grid_, {scene.parcels.correction_iterations, scene.parcels.gradient_prefactor,
                           scene.parcels.max_compression}) {
   require_countable(grid_, scene.parcels.per_cell);
   store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
-  mesh_access_.reset(
-      new MeshAccessOf<D>({grid_, *store_, deposit_, tile_begin_, transport_, wind_}));
+  mesh_access_.reset(new MeshAccessOf<D>({grid_, *store_, tile_begin_, transport_, wind_}));
 }
 
 template <int D>
@@ -245,8 +244,8 @@ void SimulationOf<D>::restore(const output::NamedData& data) {
   wind_.velocity = {wind.at(0), wind.at(1)};
   const auto& zero = data.counters.at("zero_wall_vorticity");
   const auto& tiles = data.counters.at("tile_begin");
-  if (data.arrays.at("domain") != corners() ||
-      tiles.size() != deposit_.tiling().tiles().size() + 1 || tiles.back() != store_->size())
+  if (data.arrays.at("domain") != corners() || tiles.size() != tiling_.tiles().size() + 1 ||
+      tiles.back() != store_->size())
     throw Error(ExitCode::usage,
                 "The checkpoint belongs to another domain or mesh than the scene describes.");
   tile_begin_.assign(tiles.begin(), tiles.end());
@@ -372,68 +371,14 @@ double SimulationOf<D>::grid_kinetic_energy() const {
 }
 
 template <int D>
-std::vector<output::Variable> SimulationOf<D>::grid_fields() const {
-  std::vector<output::Variable> fields;
-  if constexpr (D == 3)
-    fields = {{"x_velocity", "m s-1", "velocity in x"},
-              {"y_velocity", "m s-1", "velocity in y"},
-              {"z_velocity", "m s-1", "upward velocity", "upward_air_velocity"},
-              {"x_vorticity", "s-1", "vorticity component in x"},
-              {"y_vorticity", "s-1", "vorticity component in y"},
-              {"z_vorticity", "s-1", "upward component of vorticity",
-               "atmosphere_upward_relative_vorticity"}};
-  else
-    fields = {{"x_velocity", "m s-1", "velocity in x"},
-              {"z_velocity", "m s-1", "upward velocity", "upward_air_velocity"},
-              {"vorticity", "s-1", "vorticity dw/dx - du/dz"}};
-  fields.push_back({"buoyancy", "m s-2", "buoyancy"});
-  fields.push_back({"volume", D == 3 ? "m3" : "m2", "volume of parcels gathered at a node"});
-  for (const parcels::Scalar& s : store_->scalars())
-    if (s.name != "buoyancy") fields.push_back({s.name, s.units, s.name});
-  return fields;
-}
-
-template <int D>
-void SimulationOf<D>::grid_field(const std::string& name, std::vector<double>& values) {
-  using Flow = mesh::FlowRecord<D>;
-  using Record = mesh::DepositRecord<D>;
-  if (name == "volume")
-    return output::copy_nodes(grid_, transport_->deposited(), Record::width, Record::volume,
-                              values);
-  if (name == "buoyancy") {
-    output::copy_nodes(grid_, transport_->deposited(), Record::width, Record::buoyancy, values);
-    for (int k = 0; k <= grid_.nz(); ++k) {
-      const double b = reference_(grid_.bottom() + k * grid_.spacing[D - 1]);
-      for (std::size_t c = 0; c < grid_.columns(); ++c)
-        values[static_cast<std::size_t>(k) * grid_.columns() + c] += b;
-    }
-    return;
-  }
-  static const std::vector<std::string> directions =
-      D == 3 ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{"x", "z"};
-  for (std::size_t d = 0; d < directions.size(); ++d)
-    if (name == directions[d] + "_velocity")
-      return output::copy_nodes(grid_, transport_->flow(), Flow::width, static_cast<int>(d),
-                                values);
-  if (name.ends_with("vorticity")) {
-    constexpr int components = Record::vorticity_components;
-    AlignedArray<double> vorticity(grid_.nodes() * components);
-    mesh::grid_vorticity<D>(grid_, transport_->flow(), vorticity.data());
-    for (int c = 0; c < components; ++c)
-      if (components == 1 || name == directions[static_cast<std::size_t>(c)] + "_vorticity")
-        return output::copy_nodes(grid_, vorticity.data(), components, c, values);
-  }
-  const int scalar = store_->find_scalar(name);
-  if (scalar < 0) throw Error(ExitCode::usage, fmt::format("There is no field '{}'.", name));
-  AlignedArray<double> field(grid_.nodes() * Record::width);
-  deposit_.means(*store_, tile_begin_, {store_->scalar(scalar)}, {}, field.data());
-  output::copy_nodes(grid_, field.data(), Record::width, 1, values);
+GriddedFields<D> SimulationOf<D>::gridded() const {
+  return GriddedFields<D>({grid_, *store_, *transport_, tile_begin_, reference_});
 }
 
 template <int D>
 std::size_t SimulationOf<D>::allocated_bytes() const {
   return store_->allocated_bytes() + transport_->allocated_bytes() + upkeep_.allocated_bytes() +
-         correction_.allocated_bytes() + deposit_.allocated_bytes();
+         correction_.allocated_bytes();
 }
 
 std::unique_ptr<Simulation> make_simulation(const scene::Scene& scene,

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "model/gridded_fields.hpp"
 #include "model/mesh_access_of.hpp"
 #include "model/simulation.hpp"
 
@@ -39,8 +40,11 @@ class SimulationOf final : public Simulation {
   std::size_t node_count() const override {
     return grid_.columns() * static_cast<std::size_t>(grid_.nz() + 1);
   }
-  void grid_field(const std::string& name, std::vector<double>& values) override;
-  std::vector<output::Variable> grid_fields() const override;
+  void grid(const std::vector<std::string>& names,
+            std::vector<std::vector<double>>& values) override {
+    gridded().grid(names, values);
+  }
+  std::vector<output::Variable> grid_fields() const override { return gridded().list(); }
   parcels::VolumeError volume_error() const override;
   double grid_kinetic_energy() const override;
   std::size_t allocated_bytes() const override;
@@ -65,6 +69,7 @@ class SimulationOf final : public Simulation {
   void warn_of_divergence() const;
   double aspect_limit() const;
   std::array<bool, 2> walls_without_vorticity() const;
+  GriddedFields<D> gridded() const;
   void place_parcels(const scene::Scene& scene);
   void require_finite() const;
   std::vector<double> corners() const;
@@ -76,7 +81,7 @@ class SimulationOf final : public Simulation {
   TracedBuoyancy buoyancy_;
   std::array<bool, 2> zero_wall_vorticity_{false, false};
   std::unique_ptr<dynamics::ParcelMotion<D>> transport_;
-  parcels::Deposit<D> deposit_;  // tiling and gridded output beside the transport's own
+  parcels::Tiling<D> tiling_;
   parcels::Upkeep<D> upkeep_;
   parcels::VolumeCorrection<D> correction_;
   std::vector<std::size_t> tile_begin_;

@@ -37,7 +37,7 @@ class VolumeCorrection {
   VolumeError measure(const Store& store, const SupportOffsets<D>& offsets,
                       const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit);
   std::size_t allocated_bytes() const {
-    return excess_.allocated_bytes() + gradient_.allocated_bytes();
+    return potential_.allocated_bytes() + excess_.allocated_bytes() + gradient_.allocated_bytes();
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "parcels/margin.hpp"
 
 namespace pileus::parcels {
 namespace {
@@ -114,7 +115,7 @@ void Deposit<D>::run(const DepositJob<D>& whole, std::size_t parcels,
         std::fill(whole.field + begin, whole.field + end, 0.0);
       },
       1u << 15);
-  if (strays_.size() < parcels) strays_.resize(parcels + parcels / 32);
+  if (strays_.size() < parcels) resize_with_margin(strays_, parcels);
 
   for (const auto& colour : tiling_.colours())
     parallel_tasks(colour.size(), [&](std::size_t task) {
