@@ -20,6 +20,11 @@ class RainSedimentation : public Operator<RainSedimentation> {
     density_ = d.number("air_density", "kg m-3", 1.2)
                    .range(1e-3, 10.0)
                    .doc("of the air: turns mass per mass into rain on the ground");
+    ground_ = d.number("ground", "m", -1e6)
+                  .range(-1e6, 1e6)
+                  .doc(
+                      "height of the ground, taken to the nearest face of the mesh's cells; below "
+                      "it no rain falls. The bottom of the domain where that is higher");
     x_ = d.reads("x_position", "m");
     y_ = d.reads("y_position", "m").doc("does not exist in two dimensions");
     height_ = d.reads("height", "m");
@@ -50,6 +55,11 @@ class RainSedimentation : public Operator<RainSedimentation> {
     std::int64_t levels() const { return grid_.cells[2]; }
     std::int64_t count() const { return columns() * levels(); }
     double depth() const { return grid_.spacing[2]; }
+    /// Number of levels below a height.
+    std::int64_t below(double height) const {
+      const double faces = std::round((height - grid_.origin[2]) / grid_.spacing[2]);
+      return static_cast<std::int64_t>(std::clamp(faces, 0.0, static_cast<double>(levels())));
+    }
     /// Of a column's ground, m2; of one metre in y in two dimensions.
     double area() const { return grid_.spacing[0] * (grid_.dimension == 3 ? grid_.spacing[1] : 1); }
     /// Column-wise, bottom first: a column's cells lie together.
@@ -122,13 +132,16 @@ class RainSedimentation : public Operator<RainSedimentation> {
     double* fallen_drops = block.accumulator(fallen_drops_);
     const double per_area = value(density_) / f.cells.area();
     const auto scheme = static_cast<FallSpeedScheme>(choice(scheme_));
-    const std::size_t levels = f.levels();
+    const std::size_t all = f.levels(),
+                      buried = static_cast<std::size_t>(f.cells.below(value(ground_)));
+    const std::size_t levels = all - buried;
+    const std::span<double> fast = f.work.first(levels), slow = f.work.subspan(levels, levels);
+    const std::span<double> room = f.work.subspan(2 * levels, levels);
     double ground = 0;
-    for (std::size_t column = 0; column < f.size; column += levels) {
-      const std::span<double> fast = f.work.first(levels), slow = f.work.subspan(levels, levels);
-      const std::span<double> room = f.work.subspan(2 * levels, levels);
+    for (std::size_t column = 0; column < f.size; column += all) {
+      const std::size_t lowest = column + buried;
       for (std::size_t k = 0; k < levels; ++k) {
-        const double mass = f.mass[column + k], number = f.number[column + k];
+        const double mass = f.mass[lowest + k], number = f.number[lowest + k];
         FallSpeeds v;
         if (mass > 0)
           v = fall_speeds(scheme, mass / std::max(number, mass / drops::largest_raindrop),
@@ -136,15 +149,28 @@ class RainSedimentation : public Operator<RainSedimentation> {
         fast[k] = v.mass * dt / f.cells.depth();
         slow[k] = v.number * dt / f.cells.depth();
       }
-      FallingAmount mass{f.mass.subspan(column, levels), f.mass_kept.subspan(column, levels)};
-      FallingAmount number{f.number.subspan(column, levels), f.number_kept.subspan(column, levels)};
-      fall(mass, fast, f.volume.subspan(column, levels), room);
-      fall(number, slow, f.volume.subspan(column, levels), room);
-      fallen[column / levels] += per_area * mass.ground;
-      fallen_drops[column / levels] += per_area * number.ground;
+      FallingAmount mass{f.mass.subspan(lowest, levels), f.mass_kept.subspan(lowest, levels)};
+      FallingAmount number{f.number.subspan(lowest, levels), f.number_kept.subspan(lowest, levels)};
+      mass.ground = bury(f.mass.subspan(column, buried), f.mass_kept.subspan(column, buried));
+      number.ground = bury(f.number.subspan(column, buried), f.number_kept.subspan(column, buried));
+      fall(mass, fast, f.volume.subspan(lowest, levels), room);
+      fall(number, slow, f.volume.subspan(lowest, levels), room);
+      fallen[column / all] += per_area * mass.ground;
+      fallen_drops[column / all] += per_area * number.ground;
       ground += mass.ground;
     }
     return ground;
+  }
+
+  /// What cells below the ground held, all of it, lies on the ground. Returns its sum.
+  static double bury(std::span<double> held, std::span<double> kept) {
+    double sum = 0;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      sum += held[k];
+      held[k] = 0;
+      kept[k] = 0;
+    }
+    return sum;
   }
 
   /// Gives every parcel what it keeps and its share by volume of what arrived in its cell. Returns
@@ -184,7 +210,7 @@ class RainSedimentation : public Operator<RainSedimentation> {
   }
 
   Slot x_, y_, height_, volume_, rain_, drops_, fallen_, fallen_drops_;
-  Param scheme_, density_;
+  Param scheme_, density_, ground_;
   Budget water_;
 };
 

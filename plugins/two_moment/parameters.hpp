@@ -17,13 +17,14 @@ inline constexpr const char* with_modes = "activation != twomey";
 inline constexpr const char* with_profile = "temperature == reference_profile";
 inline constexpr const char* with_carried_aerosol = "aerosol == carried";
 inline constexpr const char* with_derived_buoyancy = "buoyancy == derived";
+inline constexpr const char* with_peak = "largest_supersaturation == kept";
 
 struct Parameters {
   AirParameters air;
   Param humidity, temperature, profile_theta, buoyancy;
   Param activation, aerosol, aerosol_number, aerosol_radius, aerosol_deviation, aerosol_kappa;
   Param aerosol_density, twomey_coefficient, twomey_exponent, twomey_limit;
-  Param surface_tension, embryo_radius, substep_fraction, spectrum, collection;
+  Param surface_tension, embryo_radius, substep_fraction, spectrum, collection, peak;
 
   void describe(Declaration& d) {
     air.describe_constants(d);
@@ -56,6 +57,10 @@ struct Parameters {
                    .doc("of droplet sizes about their mean mass");
     collection = d.choice("collection", {"none", "khairoutdinov_kogan", "seifert_beheng"})
                      .doc("collisions of drops; rain is carried only with it");
+    peak = d.choice("largest_supersaturation", {"forgotten", "kept"})
+               .doc(
+                   "whether parcels remember the largest supersaturation they have met, within "
+                   "steps too");
   }
 
   void describe_activation(Declaration& d) {

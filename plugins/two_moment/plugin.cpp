@@ -1,6 +1,7 @@
 // Two-moment clouds: mass and number of droplets and drops, supersaturation that is never assumed.
 #include <pileus/plugin.hpp>
 
+#include <algorithm>
 #include <optional>
 
 #include "collection.hpp"
@@ -73,6 +74,7 @@ class TwoMoment : public Operator<TwoMoment> {
     block.each([&](auto p) {
       if (c.idle(p)) return;  // the activity condition, so that skipping changes nothing
       const Actions did = advance(c, p, step.dt);
+      if (c.peak != nullptr) c.peak[p] = std::max(c.peak[p], did.peak);
       repairs += static_cast<std::uint64_t>(did.limited + did.repaired);
       created += c.volume[p] * did.created;
     });
@@ -92,7 +94,7 @@ class TwoMoment : public Operator<TwoMoment> {
   /// The columns of one block; those of quantities that do not exist are null.
   struct Columns {
     const double *height, *humidity, *volume;
-    double *previous, *theta, *vapour, *cloud, *droplets, *aerosol, *rain, *raindrops;
+    double *previous, *theta, *vapour, *cloud, *droplets, *aerosol, *rain, *raindrops, *peak;
 
     bool idle(std::int64_t p) const {
       return humidity[p] <= 1 && cloud[p] <= 0 && droplets[p] <= 0 &&
@@ -125,7 +127,7 @@ class TwoMoment : public Operator<TwoMoment> {
             block.out(theta_),         block.out(vapour_),
             block.out(cloud_),         block.out(droplets_),
             if_there(aerosol_number_), if_there(rain_),
-            if_there(raindrops_)};
+            if_there(raindrops_),      if_there(peak_)};
   }
 
   Level level(double height) const {
@@ -231,6 +233,11 @@ class TwoMoment : public Operator<TwoMoment> {
                      .intensive()
                      .range(0.0, 1e16)
                      .when(with_rain);
+    peak_ = d.owns("largest_supersaturation", "1")
+                .intensive()
+                .range(0.0, 1e300)
+                .when(with_peak)
+                .doc("met since the start while droplets could form");
     temperature_ = d.derives("air_temperature", "K").range(coldest_air, 1e4);
     relative_humidity_ = d.derives("relative_humidity", "1")
                              .range(0.0, std::numeric_limits<double>::max())
@@ -252,7 +259,7 @@ class TwoMoment : public Operator<TwoMoment> {
 
   Parameters parameters_;
   Slot height_, volume_, previous_height_, theta_, vapour_, aerosol_number_;
-  Slot cloud_, droplets_, rain_, raindrops_, temperature_, relative_humidity_, buoyancy_;
+  Slot cloud_, droplets_, rain_, raindrops_, peak_, temperature_, relative_humidity_, buoyancy_;
   Budget number_budget_;
   MoistAir air_;
   std::optional<Aerosol> aerosol_;

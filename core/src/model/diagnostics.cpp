@@ -80,7 +80,8 @@ int Diagnostics::index(const std::string& name) const {
 
 Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation,
                          const coupling::SurfaceFields& surface,
-                         const std::vector<std::string>& changed)
+                         const std::vector<std::string>& changed,
+                         const std::vector<std::string>& budgets)
     : potential_energy_(scene),
       soundness_(simulation, changed),
       surface_(surface),
@@ -115,6 +116,10 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
             "domain-mean vorticity"));
   add_scalars(store);
   add_water(scene, simulation);
+  for (const std::string& budget : budgets)
+    budget_entries_.push_back(
+        add(budget + "_budget_defect", "1",
+            "change of the budget that no operator has booked as a source, relative to it"));
   for (const scene::ExactSolution& exact : scene.diagnostics.exact) {
     exact_.emplace_back(exact, scene, simulation);
     auto& entries = exact_entries_.emplace_back();
@@ -238,6 +243,13 @@ void Diagnostics::observe_state(Simulation& simulation) {
   for (std::size_t i = 0; i < histograms_.size(); ++i) {
     const std::vector<double> found = histograms_[i].measure(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(histogram_entries_[i][k], found[k]);
+  }
+}
+
+void Diagnostics::observe_budgets(const std::vector<output::BudgetSummary>& budgets) {
+  for (std::size_t i = 0; i < budgets.size() && i < budget_entries_.size(); ++i) {
+    const double size = std::max(std::abs(budgets[i].initial), std::abs(budgets[i].final));
+    set(budget_entries_[i], size > 0 ? budgets[i].defect / size : budgets[i].defect);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "model/simulation.hpp"
 #include "model/soundness.hpp"
 #include "model/water_path.hpp"
+#include "output/summary.hpp"
 #include "scene/scene.hpp"
 
 namespace pileus::model {
@@ -27,9 +28,10 @@ struct DiagnosticInfo {
 class Diagnostics {
  public:
   /// `surface`: of the run's operators; it has to outlive this. `changed` names the quantities that
-  /// operators may change.
+  /// operators may change, `budgets` the totals that the run keeps books of.
   Diagnostics(const scene::Scene& scene, const Simulation& simulation,
-              const coupling::SurfaceFields& surface, const std::vector<std::string>& changed);
+              const coupling::SurfaceFields& surface, const std::vector<std::string>& changed,
+              const std::vector<std::string>& budgets);
 
   const std::vector<DiagnosticInfo>& list() const { return list_; }
   int index(const std::string& name) const;  // −1: there is none of that name
@@ -38,6 +40,8 @@ class Diagnostics {
   void observe_state(Simulation& simulation);
   /// Part that needs the parcels' velocity; call after begin_step() or probe().
   void observe_velocity(Simulation& simulation);
+  /// What became of the budgets, in their order at construction.
+  void observe_budgets(const std::vector<output::BudgetSummary>& budgets);
   /// One value per entry of list(), of the state last observed.
   const std::vector<double>& values() const { return values_; }
 
@@ -87,6 +91,7 @@ class Diagnostics {
   std::vector<ScalarEntries> scalars_;
   const coupling::SurfaceFields& surface_;
   std::vector<SurfaceEntries> surface_entries_;
+  std::vector<int> budget_entries_;
   std::optional<WaterPath> water_path_;  // of moist scenes
   double cloud_threshold_;
   int liquid_scalar_ = -1, water_scalar_ = -1, rain_scalar_ = -1;

@@ -54,8 +54,11 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
       physics_(sequence_, planner::Tripwires(plan_)),
       simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
   sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
+  std::vector<std::string> budgets;
+  for (const coupling::BudgetTotal& total : sequence_.ledger().totals)
+    budgets.push_back(total.budget);
   diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface(),
-                                               sequence_.changed_quantities());
+                                               sequence_.changed_quantities(), budgets);
   check_expectations(scene.expect, diagnostics_->list());
   record_ = std::make_unique<Record>(diagnostics_->list());
 }
@@ -192,6 +195,8 @@ void Loop::observe_and_begin(double until, bool last) {
   if (observe) {
     const PhaseScope scope(simulation_->times(), Phase::diagnostics);
     diagnostics_->observe_state(*simulation_);
+    if (!initial_budgets_.empty())
+      diagnostics_->observe_budgets(budget_summaries(sequence_.ledger()));
   }
   const double before = core_seconds();
   if (last)

@@ -59,6 +59,7 @@ class Loop {
   void report_activations();
   double share_of_run(double seconds) const;
   std::vector<output::EffectSummary> effect_summaries(const coupling::Ledger& ledger) const;
+  std::vector<output::BudgetSummary> budget_summaries(const coupling::Ledger& ledger) const;
   void write_status(const char* state) const;
 
   const scene::Scene& scene_;

@@ -61,6 +61,24 @@ std::vector<output::EffectSummary> Loop::effect_summaries(const coupling::Ledger
   return effects;
 }
 
+/// What became of every total that the run keeps books of.
+std::vector<output::BudgetSummary> Loop::budget_summaries(const coupling::Ledger& ledger) const {
+  std::vector<output::BudgetSummary> budgets;
+  for (const auto& total : ledger.totals) {
+    output::BudgetSummary budget;
+    budget.name = total.budget;
+    budget.final = budget.initial = total.total;
+    for (const auto& initial : initial_budgets_)
+      if (initial.budget == total.budget) budget.initial = initial.total;
+    for (const auto& op : ledger.operators)
+      for (const auto& share : op.budgets)
+        if (share.budget == total.budget) budget.sources += share.source;
+    budget.defect = budget.final - budget.initial - budget.sources;
+    budgets.push_back(budget);
+  }
+  return budgets;
+}
+
 output::Summary Loop::summary() const {
   output::Summary s;
   describe_origin(scene_, s);
@@ -99,18 +117,7 @@ output::Summary Loop::summary() const {
   }
   s.watch = {physics_.tripwires().checks(), physics_.tripwires().seconds()};
   s.effects = effect_summaries(ledger);
-  for (const auto& total : ledger.totals) {
-    output::BudgetSummary budget;
-    budget.name = total.budget;
-    budget.final = budget.initial = total.total;
-    for (const auto& initial : initial_budgets_)
-      if (initial.budget == total.budget) budget.initial = initial.total;
-    for (const auto& op : ledger.operators)
-      for (const auto& share : op.budgets)
-        if (share.budget == total.budget) budget.sources += share.source;
-    budget.defect = budget.final - budget.initial - budget.sources;
-    s.budgets.push_back(budget);
-  }
+  s.budgets = budget_summaries(ledger);
   std::map<std::string, std::vector<double>> beside_parcels = sequence_.surface().named_values();
   const auto& wind = simulation_->mean_wind().velocity;
   beside_parcels["mean_wind"] = {wind[0], wind[1]};

@@ -29,7 +29,9 @@ struct Shower {
   pileus_grid grid{};
   std::uint64_t steps = 0;
 
-  explicit Shower(int dimension) : sequence(make()), store(dimension, sequence.required_scalars()) {
+  using Settings = std::vector<std::pair<std::string, scene::RawValue>>;
+  explicit Shower(int dimension, const Settings& settings = {})
+      : sequence(make(settings)), store(dimension, sequence.required_scalars()) {
     grid.dimension = static_cast<std::uint32_t>(dimension);
     grid.cells[0] = 4, grid.cells[1] = dimension == 3 ? 3 : 1, grid.cells[2] = 10;
     grid.spacing[0] = 100, grid.spacing[1] = dimension == 3 ? 150 : 0, grid.spacing[2] = 50;
@@ -73,9 +75,9 @@ struct Shower {
   }
 
  private:
-  static OperatorSequence make() {
+  static OperatorSequence make(const Settings& settings) {
     scene::Scene scene;
-    scene.operators.push_back(operator_of("org.pileus.rain_sedimentation", "fall", {}));
+    scene.operators.push_back(operator_of("org.pileus.rain_sedimentation", "fall", settings));
     scene::Problems problems;
     SequenceOptions options;
     options.initial = {"air_potential_temperature", "specific_humidity", rain_name, drops_name};
@@ -120,6 +122,38 @@ TEST(RainSedimentation, falls_within_its_column) {
       static_cast<std::size_t>(shower.sequence.surface().find("rainfall_amount")));
   ASSERT_EQ(ground.size(), 12u);
   for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(ground[k] > 0, k == 0 + 4 * 2) << k;
+}
+
+TEST(RainSedimentation, ends_at_a_ground_above_the_bottom) {
+  // Faces lie at 0, 50, … 500 m: 161 m is nearest to 150 m.
+  Shower shower(2, {{"ground", {"161", false, {}, {}, {}}}});
+  const double before = shower.in_the_air(rain_name);
+  double buried = 0;
+  for (std::size_t p = 0; p < shower.store.size(); ++p)
+    if (shower.store.position(1)[p] < 150)
+      buried += shower.store.volume()[p] * shower.values(rain_name)[p];
+  ASSERT_GT(buried, 0.1 * before);
+  shower.step(1e-9);  // nothing falls far
+  EXPECT_NEAR(shower.on_the_ground("rainfall_amount") / buried, 1.0, 1e-9);
+  for (int i = 0; i < 30; ++i) {
+    shower.step(i % 5 == 0 ? 60.0 : 4.0);
+    EXPECT_NEAR((shower.in_the_air(rain_name) + shower.on_the_ground("rainfall_amount")) / before,
+                1.0, 1e-13);
+    for (std::size_t p = 0; p < shower.store.size(); ++p) {
+      const bool below = shower.store.position(1)[p] < 150;
+      ASSERT_EQ(below && shower.values(rain_name)[p] != 0, false) << p;
+      ASSERT_EQ(below && shower.values(drops_name)[p] != 0, false) << p;
+    }
+  }
+  EXPECT_GT(shower.on_the_ground("rainfall_amount"), 0.99 * before);
+}
+
+TEST(RainSedimentation, falls_out_at_once_below_a_ground_above_everything) {
+  Shower shower(3, {{"ground", {"1e5", false, {}, {}, {}}}});
+  const double before = shower.in_the_air(rain_name);
+  shower.step(1);
+  EXPECT_EQ(shower.in_the_air(rain_name), 0.0);
+  EXPECT_NEAR(shower.on_the_ground("rainfall_amount") / before, 1.0, 1e-13);
 }
 
 TEST(RainSedimentation, does_nothing_without_rain) {

@@ -182,5 +182,21 @@ TEST(TwoMomentOperator, refuses_modes_that_do_not_match) {
                std::exception);
 }
 
+TEST(TwoMomentOperator, keeps_the_largest_supersaturation_of_a_step_whatever_its_length) {
+  // The number activated is C (100 s)^k of the largest supersaturation met, Twomey 1959.
+  const auto peak_after = [](double dt) {
+    Layer layer({{"largest_supersaturation", one("kept")}, {"activation", one("twomey")}}, 40);
+    for (double t = 0; t < 100; t += dt) layer.rise(dt, dt);
+    const double peak = layer.values("largest_supersaturation")[30];
+    EXPECT_NEAR(layer.values(droplets_name)[30], 1e8 / 1.2 * std::sqrt(100 * peak), 1e-9 * 1e8);
+    EXPECT_EQ(layer.values("largest_supersaturation")[0], 0.0);  // of air that stays dry
+    return peak;
+  };
+  const double fine = peak_after(0.1);
+  EXPECT_GT(fine, 1e-3);
+  // Sub-steps of half the relaxation time resolve the peak to some 1 % (tests/analytic).
+  EXPECT_NEAR(peak_after(10) / fine, 1.0, 0.012);
+}
+
 }  // namespace
 }  // namespace pileus::coupling
