@@ -3,6 +3,8 @@
 #pragma once
 #include <pileus/thermo.hpp>
 
+#include <algorithm>
+
 namespace pileus::two_moment {
 
 enum class HumidityMeasure { specific_humidity, mixing_ratio };
@@ -52,6 +54,14 @@ struct MoistAir {
             ? thermo::saturation_specific_humidity(e, pressure, constants.epsilon)
             : thermo::saturation_mixing_ratio(e, pressure, constants.epsilon);
     return {q.value, q.slope, e.value};
+  }
+
+  /// −∂ ln q_s/∂ ln p at a saturation pressure e_s: p/(p − (1 − ε) e_s), or p/(p − e_s) as mixing
+  /// ratio; cut where air is near boiling.
+  double pressure_response(double saturation, double pressure) const {
+    const double share =
+        measure == HumidityMeasure::specific_humidity ? 1.0 - constants.epsilon : 1.0;
+    return 1.0 / std::max(0.1, 1.0 - share * saturation / pressure);
   }
 
   /// Vapour pressure over its saturation value: e/e_s, with e of the humidity's measure.

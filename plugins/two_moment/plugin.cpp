@@ -48,6 +48,7 @@ class TwoMoment : public Operator<TwoMoment> {
     const double* vapour = block.in(vapour_);
     const double* cloud = block.in(cloud_);
     const double* rain = collection_ != Collection::none ? block.in(rain_) : nullptr;
+    const double* previous = block.in(previous_height_);
     double* kelvin = block.out(temperature_);
     double* humidity = block.out(relative_humidity_);
     double* b = derives_buoyancy_ ? block.out(buoyancy_) : nullptr;
@@ -57,13 +58,21 @@ class TwoMoment : public Operator<TwoMoment> {
           air_.prescribed_temperature ? at.exner * profile_theta(z[p]) : at.exner * theta[p];
       if (!(t >= coldest_air)) refuse_cold(block.uid(p), z[p], t);
       kelvin[p] = t;
-      humidity[p] = vapour[p] == 0 ? 0.0
-                                   : air_.relative_humidity(
-                                         vapour[p], t, thermo::pressure_of_exner(at.exner, kappa_));
+      const bool moist = vapour[p] != 0 || cloud[p] > 0;
+      const double pressure = moist ? thermo::pressure_of_exner(at.exner, kappa_) : 0.0;
+      humidity[p] = vapour[p] == 0 ? 0.0 : air_.relative_humidity(vapour[p], t, pressure);
       if (b == nullptr) return;
-      const double liquid = rain == nullptr ? cloud[p] : cloud[p] + rain[p];
+      double condensed = 0;
+      if (cloud[p] > 0 && z[p] != previous[p]) {
+        condensed =
+            std::clamp(condensed_on_the_way(z[p] - previous[p], theta[p], {t, pressure}, at),
+                       -cloud[p], vapour[p]);
+      }
+      const double liquid = (rain == nullptr ? cloud[p] : cloud[p] + rain[p]) + condensed;
       b[p] = buoyancy_scale_ *
-             (thermo::virtual_potential_temperature(t / at.exner, vapour[p], liquid) - at.theta_v);
+             (thermo::virtual_potential_temperature((t + air_.warming() * condensed) / at.exner,
+                                                    vapour[p] - condensed, liquid) -
+              at.theta_v);
     });
   }
 
@@ -134,6 +143,25 @@ class TwoMoment : public Operator<TwoMoment> {
     const double exner = reference_->at(height).exner;
     return {thermo::pressure_of_exner(exner, kappa_), exner,
             air_.prescribed_temperature ? exner * profile_theta(height) : 0.0};
+  }
+
+  struct Air {
+    double temperature, pressure;  // K, Pa
+  };
+  /// What has condensed since the last call of apply if the excess of vapour has stayed as it was,
+  /// as in steady ascent: the fall of q_s on the way over Γ. Clouds heat the air within a step by
+  /// it and not one step later. Along the dry adiabat d ln q_s/dz = −(dq_s/dT)/q_s·(g/c_p)(θ/θ_v) +
+  /// (−∂ ln q_s/∂ ln p) g/(R_d T_v), with θ_v and T_v of the reference state.
+  double condensed_on_the_way(double rise, double theta, const Air& air,
+                              const thermo::ReferenceState::Point& at) const {
+    const Saturation s = air_.saturation(air.temperature, air.pressure);
+    if (air_.prescribed_temperature || !(s.humidity > 0)) return 0;
+    const thermo::Constants& c = air_.constants;
+    const double cooling = s.slope / s.humidity * c.gravity / c.heat_capacity * theta / at.theta_v;
+    const double expansion = air_.pressure_response(s.pressure, air.pressure) * c.gravity /
+                             (c.gas_constant_dry_air * at.exner * at.theta_v);
+    const double x = std::clamp(rise * (cooling - expansion), -1.0, 1.0);
+    return s.humidity * x * (1.0 + 0.5 * x) / (1.0 + air_.warming() * s.slope);
   }
 
   Actions advance(const Columns& c, std::int64_t p, double dt) const {

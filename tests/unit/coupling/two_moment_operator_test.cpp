@@ -198,5 +198,36 @@ TEST(TwoMomentOperator, keeps_the_largest_supersaturation_of_a_step_whatever_its
   EXPECT_NEAR(peak_after(10) / fine, 1.0, 0.012);
 }
 
+TEST(TwoMomentOperator, heats_cloud_while_it_rises_and_not_a_step_later) {
+  for (const char* measure : {"specific_humidity", "mixing_ratio"}) {
+    Layer layer({{"activation", one("twomey")},
+                 {"twomey_coefficient", one("1e13")},  // so many that the excess stays near zero
+                 {"twomey_limit", one("1e13")},
+                 {"twomey_exponent", one("0")},
+                 {"saturation_humidity", one(measure)}},
+                40);
+    for (int i = 0; i < 50; ++i) layer.rise(10, 10);
+    ASSERT_GT(layer.values(cloud_name)[30], 1e-4);
+    for (const double distance : {100.0, -100.0}) {
+      const double theta = layer.values(theta_name)[30];
+      layer.sequence.apply_before_transport({layer.steps, 0, 10});
+      for (std::size_t p = 0; p < 40; ++p) layer.store.position(2)[p] += distance;
+      layer.sequence.diagnose({layer.steps, 0, 10});
+      const double on_the_way = layer.values("buoyancy")[30];
+      EXPECT_EQ(layer.values(theta_name)[30], theta);
+      layer.sequence.apply_after_transport({layer.steps, 0, 10});
+      layer.sequence.population_changed();
+      ++layer.steps;
+      layer.sequence.diagnose({layer.steps, 0, 10});
+      const double after = layer.values("buoyancy")[30];
+      // Of the heat only the curvature of q_s is left: (100 m/1.5 km)^2/6 and that of Γ, 100 m/3
+      // km.
+      const double heat = 9.81 / 300 * std::abs(layer.values(theta_name)[30] - theta);
+      EXPECT_GT(heat, 5e-3);
+      EXPECT_NEAR(on_the_way, after, 0.04 * heat) << measure << distance;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pileus::coupling
