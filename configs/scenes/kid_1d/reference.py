@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The numbers that these scenes expect, by integrations of their own.
+"""The numbers that these scenes expect, computed apart from the program.
 
 Equilibrium: the initial profile shifted by the lift and brought to saturation at each height. With
 droplets: parcels 5 m apart whose droplets grow by diffusion, in explicit steps of 0.05 s. Liquid water
