@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <thread>
 
 #include "base/error.hpp"
@@ -103,11 +105,17 @@ std::vector<output::NumberColumn> number_columns(const Findings& findings) {
   return columns;
 }
 
-std::string text_of(const std::string& path) {
+scene::Node tree_of(const std::string& path) {
   scene::Problems problems;
-  const scene::Node root = scene::load_document(path, problems);
+  scene::Node root = scene::load_document(path, problems);
   problems.throw_if_any();
-  return scene::flow_text(root);
+  return root;
+}
+
+void remove_keys(scene::Node& node, std::initializer_list<std::string_view> keys) {
+  std::erase_if(node.entries, [&](const scene::Entry& entry) {
+    return std::find(keys.begin(), keys.end(), entry.key) != keys.end();
+  });
 }
 
 std::string quote(const std::string& text) {
@@ -120,13 +128,24 @@ Json spread_json(const Spread& spread) {
   return {{"value", spread.value}, {"low", spread.low}, {"high", spread.high}};
 }
 
+/// "key=value", as `--set` takes them.
+std::vector<std::string> assignments(const std::vector<scene::Setting>& settings) {
+  std::vector<std::string> words;
+  for (const scene::Setting& setting : settings)
+    words.push_back(setting.key + "=" + scene::flow_text(setting.value));
+  return words;
+}
+
 Json point_json(const Findings& findings, const PointResult& point) {
   Json json;
+  const std::vector<std::string> settings = assignments(point.settings);
   json["label"] = point.label;
-  json["settings"] = Json::array();
-  for (const scene::Setting& setting : point.settings)
-    json["settings"].push_back(setting.key + "=" + scene::flow_text(setting.value));
+  json["settings"] = settings;
+  if (findings.study.experiment == Study::Experiment::scene)
+    json["scene_sha256"] = scene_fingerprint(findings.study.scene_path(), settings);
   json["cost"] = spread_json(point.cost);
+  json["core_time"] = point.core_time.value;
+  json["wall_time"] = point.wall_time.value;
   json["steps"] = point.steps;
   json["parcels"] = point.parcels;
   json["errors"] = Json::object();
@@ -140,8 +159,17 @@ Json point_json(const Findings& findings, const PointResult& point) {
 
 }  // namespace
 
-std::string scene_fingerprint(const std::string& path) {
-  return sha256_hex(text_of(path));
+std::string scene_fingerprint(const std::string& path, const std::vector<std::string>& settings) {
+  scene::Node root = tree_of(path);
+  scene::Problems problems;
+  for (const std::string& setting : settings) scene::apply_override(root, setting, problems);
+  problems.throw_if_any();
+  remove_keys(root, {"expect", "output"});
+  if (scene::Entry* identity = root.find("scene")) {
+    remove_keys(identity->value, {"name", "title", "description"});
+    if (identity->value.entries.empty()) remove_keys(root, {"scene"});
+  }
+  return sha256_hex(scene::flow_text(root));
 }
 
 std::string machine_name() {
@@ -170,7 +198,7 @@ void write_findings_netcdf(const fs::path& path, const Findings& findings) {
   provenance.source = fmt::format("Pileus {} ({})", build_record().version, build_record().commit);
   provenance.history = fmt::format("{} pileus study {}", date_now(), findings.study.path);
   provenance.scene = findings.study.experiment == Study::Experiment::scene
-                         ? text_of(findings.study.scene_path())
+                         ? scene::flow_text(tree_of(findings.study.scene_path()))
                          : "shape_integrators";
   provenance.attributes["machine"] = machine_name();
   output::write_table(path, "point", rows.size(), number_columns(findings),
@@ -198,13 +226,9 @@ void write_findings_json(const fs::path& path, const Findings& findings) {
   Json json;
   json["study"] = study.name;
   json["title"] = study.title;
-  if (study.experiment == Study::Experiment::scene) {
+  if (study.experiment == Study::Experiment::scene)
     json["scene"] = fs::relative(study.scene_path(), fs::absolute(path).parent_path()).string();
-    json["scene_sha256"] = scene_fingerprint(study.scene_path());
-  }
-  json["settings"] = Json::array();
-  for (const scene::Setting& setting : study.settings)
-    json["settings"].push_back(setting.key + "=" + scene::flow_text(setting.value));
+  json["settings"] = assignments(study.settings);
   json["date"] = date_now();
   json["version"] = build_record().version;
   json["machine"] = machine_name();

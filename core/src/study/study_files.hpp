@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "study/work_precision.hpp"
 
@@ -15,9 +16,10 @@ void write_findings_csv(const std::filesystem::path& path, const Findings& findi
 /// machine, version and date. The base scene is named relative to the file.
 void write_findings_json(const std::filesystem::path& path, const Findings& findings);
 
-/// SHA-256 of a scene file's content (with what it extends), comments and layout aside.
-/// Throws Error(usage) when it cannot be read.
-std::string scene_fingerprint(const std::string& path);
+/// SHA-256 of what a scene file (with what it extends) simulates under some settings, key=value:
+/// comments, layout, title, description, outputs and expectations aside, and whatever the settings
+/// replace. Throws Error(usage) when it cannot be read or a setting has no place in it.
+std::string scene_fingerprint(const std::string& path, const std::vector<std::string>& settings);
 
 /// The processor's name and number of cores, as the operating system gives them.
 std::string machine_name();

@@ -161,18 +161,44 @@ std::string failures_text(const Findings& findings) {
   return text.empty() ? text : "\n" + text;
 }
 
+/// One line of a verdict; `point` says of what and `value` what was found.
+std::string verdict_line(const Verdict& verdict, const std::string& point,
+                         const std::string& value) {
+  const StudyExpectation& e = verdict.expectation;
+  std::string bound;
+  if (e.low) bound += fmt::format(" >= {:.4g}", *e.low);
+  if (e.high) bound += fmt::format(" <= {:.4g}", *e.high);
+  const std::string what = e.of == StudyExpectation::Of::order
+                               ? fmt::format("order of {} along {}", e.norm, e.along)
+                               : e.norm;
+  return fmt::format("  {}  {} ({}) = {}{}  ({})\n", verdict.passed ? "pass" : "MISS", what, point,
+                     value, bound, e.source);
+}
+
+/// A line for every miss, and one for all that keep the same bound.
 std::string verdicts_text(const std::vector<Verdict>& verdicts) {
   std::string text;
-  for (const Verdict& verdict : verdicts) {
-    const StudyExpectation& e = verdict.expectation;
-    std::string bound;
-    if (e.low) bound += fmt::format(" >= {:.4g}", *e.low);
-    if (e.high) bound += fmt::format(" <= {:.4g}", *e.high);
-    const std::string what = e.of == StudyExpectation::Of::order
-                                 ? fmt::format("order of {} along {}", e.norm, e.along)
-                                 : e.norm;
-    text += fmt::format("  {}  {} ({}) = {:.4g}{}  ({})\n", verdict.passed ? "pass" : "MISS", what,
-                        verdict.point, verdict.value, bound, e.source);
+  for (std::size_t first = 0, end = 0; first < verdicts.size(); first = end) {
+    std::vector<const Verdict*> kept;
+    const auto is_of_same_bound = [&](const Verdict& verdict) {
+      const scene::Location &a = verdict.expectation.where, &b = verdicts[first].expectation.where;
+      return a.line == b.line && a.column == b.column;
+    };
+    for (end = first; end < verdicts.size() && is_of_same_bound(verdicts[end]); ++end) {
+      const Verdict& verdict = verdicts[end];
+      if (verdict.passed)
+        kept.push_back(&verdict);
+      else
+        text += verdict_line(verdict, verdict.point, fmt::format("{:.4g}", verdict.value));
+    }
+    if (kept.empty()) continue;
+    const auto [low, high] = std::minmax_element(
+        kept.begin(), kept.end(), [](auto* a, auto* b) { return a->value < b->value; });
+    const bool one = kept.size() == 1;
+    text += verdict_line(*kept.front(),
+                         one ? kept.front()->point : fmt::format("{} points", kept.size()),
+                         one ? fmt::format("{:.4g}", (*low)->value)
+                             : fmt::format("{:.4g} to {:.4g}", (*low)->value, (*high)->value));
   }
   return text.empty() ? text : "\n" + text;
 }

@@ -81,6 +81,19 @@ bool is_of_scene(const Measured& measured, const std::string& scene_path) {
   return fs::weakly_canonical(scene) == fs::weakly_canonical(scene_path);
 }
 
+std::vector<std::string> settings_of(const Json& json) {
+  return json.value("settings", Json::array()).get<std::vector<std::string>>();
+}
+
+/// Whether the scene, as it is now, simulates with a point's settings what was measured.
+bool is_as_measured(const Json& point, const std::string& scene_path) {
+  try {
+    return point.value("scene_sha256", "") == scene_fingerprint(scene_path, settings_of(point));
+  } catch (const Error&) {  // a setting has no place in the scene any more
+    return false;
+  }
+}
+
 std::vector<Measured> measured_of(const TargetRequest& request) {
   std::vector<Measured> found;
   std::string changed;
@@ -90,15 +103,16 @@ std::vector<Measured> measured_of(const TargetRequest& request) {
     if (!json) continue;
     Measured measured{path, std::move(*json)};
     if (!is_of_scene(measured, request.scene_path)) continue;
-    const Json settings = measured.json.value("settings", Json::array());
-    const bool changes = std::any_of(settings.begin(), settings.end(), [](const Json& setting) {
-      return !is_beside_the_solution(setting.get<std::string>());
-    });
-    if (changes) continue;
-    if (measured.json.value("scene_sha256", "") != scene_fingerprint(request.scene_path)) {
+    const std::vector<std::string> settings = settings_of(measured.json);
+    if (!std::all_of(settings.begin(), settings.end(), is_beside_the_solution)) continue;
+    Json current = Json::array();
+    for (const Json& point : measured.json.at("points"))
+      if (is_as_measured(point, request.scene_path)) current.push_back(point);
+    if (current.empty()) {
       changed = path.string();
       continue;
     }
+    measured.json["points"] = std::move(current);
     found.push_back(std::move(measured));
   }
   if (!found.empty()) return found;
@@ -157,22 +171,41 @@ std::vector<Candidate> points_with(const std::vector<Measured>& all, const std::
   return points;
 }
 
+/// How busy the machine was with other things, where that shows: times are upper bounds then.
+std::string disturbance(const Candidate& chosen) {
+  constexpr double undisturbed = 1.1;  // of wall time over a thread's share of the processor time
+  const auto number = [&](const char* name) {
+    const auto entry = chosen.point->find(name);
+    return entry != chosen.point->end() && entry->is_number() ? entry->get<double>() : 0.0;
+  };
+  const double core = number("core_time"), wall = number("wall_time");
+  const double ratio = wall * chosen.measured->json.at("threads").get<int>() / core;
+  if (!(core > 0 && ratio > undisturbed)) return "";
+  return fmt::format(
+      "  on a machine that was shared: it took {:.1f} times its processor time, which is an upper "
+      "bound\n",
+      ratio);
+}
+
 std::string describe(const Candidate& chosen, const std::string& norm) {
   const Json& json = chosen.measured->json;
   const Json& cost = json.at("cost");
   std::string settings;
-  for (const Json& setting : chosen.point->at("settings"))
-    settings += " --set '" + setting.get<std::string>() + "'";
+  for (const std::string& setting : settings_of(*chosen.point))
+    settings += " --set '" + setting + "'";
   return fmt::format(
       "{}: {} of {:.3g} for {} {} of {}\n"
-      "  measured by the study '{}' ({}): {}, {} points, Pileus {}, {}, threads: {}\n"
+      "  measured by the study '{}' ({}): {}, {} points, Pileus {} (commit {}), {}, threads: {}\n"
+      "{}"
       "  as with{}\n",
       chosen.point->at("label").get<std::string>(), norm, chosen.error, format_value(chosen.cost),
       cost.at("unit").get<std::string>(), cost.at("name").get<std::string>(),
       json.at("title").get<std::string>(), chosen.measured->path.lexically_normal().string(),
       chosen.point->at("date").get<std::string>().substr(0, 10), json.at("points").size(),
-      json.at("version").get<std::string>(), json.at("machine").get<std::string>(),
-      json.at("threads").get<int>(), settings);
+      json.at("version").get<std::string>(),
+      chosen.point->at("commit").get<std::string>().substr(0, 7),
+      json.at("machine").get<std::string>(), json.at("threads").get<int>(), disturbance(chosen),
+      settings);
 }
 
 }  // namespace
@@ -196,8 +229,7 @@ Choice choose_setting(const TargetRequest& request) {
                            ? std::string()
                            : "; the most accurate is\n" + describe(*best, request.norm)));
   Choice choice;
-  for (const Json& setting : cheapest->point->at("settings"))
-    choice.overrides.push_back(setting.get<std::string>());
+  choice.overrides = settings_of(*cheapest->point);
   choice.explanation = describe(*cheapest, request.norm);
   return choice;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pileus::study {
 
@@ -66,20 +67,21 @@ class Script {
     return script_ + "unset multiplot\n";
   }
 
-  /// Knobs whose values have a place on a logarithmic axis.
+  /// Knobs of which two values or more have a place on a logarithmic axis; a value of zero has none
+  /// and is seen in the panel against cost only.
   std::vector<std::size_t> knobs() const {
     std::vector<std::size_t> numbered;
     for (std::size_t k = 0; k < findings_.layout.knobs.size(); ++k) {
       const auto& ladder = findings_.layout.knobs[k].ladder;
-      if (ladder.size() > 1 &&
-          std::all_of(ladder.begin(), ladder.end(), [](const Rung& r) { return r.number > 0; }))
-        numbered.push_back(k);
+      if (std::count_if(ladder.begin(), ladder.end(), has_place) > 1) numbered.push_back(k);
     }
     if (numbered.size() > 3) numbered.resize(3);
     return numbered;
   }
 
  private:
+  static bool has_place(const Rung& rung) { return rung.number > 0; }
+
   /// Curves drawn against cost: along the first knob, or every knob's own.
   bool in_cost_panel(const KnobCurve& curve) const {
     return findings_.study.combine != Study::Combine::product || curve.knob == 0;
@@ -199,6 +201,7 @@ class Script {
     LogRange range;
     std::string tics;
     for (const Rung& rung : knob.ladder) {
+      if (!has_place(rung)) continue;
       range.add(rung.number);
       tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ", ", rung.number);
     }
@@ -238,17 +241,30 @@ class Script {
     return knob.ladder.front().number > knob.ladder.back().number;
   }
 
-  /// Straight lines of the norm's guide slopes, a little beside the first curve's middle.
+  /// The curve along a knob whose error falls fastest.
+  std::vector<KnobCurve>::const_iterator steepest(std::size_t k) const {
+    const auto& curves = findings_.layout.curves;
+    auto best = curves.end();
+    double most = -std::numeric_limits<double>::infinity();
+    for (auto curve = curves.begin(); curve != curves.end(); ++curve) {
+      const double order =
+          findings_.orders(static_cast<std::size_t>(curve - curves.begin()), norm_).overall;
+      if (curve->knob != k || !(order > most)) continue;
+      best = curve;
+      most = order;
+    }
+    return best;
+  }
+
+  /// Straight lines of the norm's guide slopes, a little beside the middle of that curve.
   std::vector<std::string> guides(std::size_t k) const {
     std::vector<std::string> parts;
-    const auto& curves = findings_.layout.curves;
-    const auto curve = std::find_if(curves.begin(), curves.end(),
-                                    [&](const KnobCurve& one) { return one.knob == k; });
-    if (curve == curves.end()) return parts;
+    const auto curve = steepest(k);
+    if (curve == findings_.layout.curves.end()) return parts;
     const std::size_t middle = curve->points[curve->points.size() / 2];
     const double error = findings_.points[middle].errors[norm_].value,
                  at = findings_.number(middle, k);
-    if (!(error > 0)) return parts;
+    if (!(error > 0 && at > 0)) return parts;
     const int sign = rises_with_number(findings_.layout.knobs[k]) ? 1 : -1;
     int dash = 2;
     for (const double slope : findings_.study.errors[norm_].slopes)

@@ -33,7 +33,7 @@ class MadeUpRuns {
         {"wall_s", 2 / alpha},
         {"parcels", {{"mean", 1000}}},
         {"ns_per_parcel_step", 1e6},
-        {"phases", {{"deposit", {{"seconds", 1 / alpha}}}, {"diagnostics", {{"seconds", 100}}}}}};
+        {"phases", {{"deposit", {{"seconds", 3 / alpha}}}, {"diagnostics", {{"seconds", 100}}}}}};
     std::ofstream(request.folder / "summary.json") << summary;
     fs::remove(request.folder / "series.nc");
     output::SeriesFile series(request.folder / "series.nc", {{"total_energy", "m2 s-2", "", ""}},
@@ -85,7 +85,7 @@ TEST_F(RunStudy, AFailedRunIsReportedAndDoesNotEndTheStudy) {
             std::string::npos)
       << table_.str();
   // Diagnostics and output are no part of the cost.
-  EXPECT_NEAR(result.findings.points[3].wall_time.value, 10, 1e-12);
+  EXPECT_NEAR(result.findings.points[3].wall_time.value, 30, 1e-12);
   EXPECT_NEAR(result.findings.points[3].cost.value, 10, 1e-9);
   EXPECT_NEAR(result.findings.points[3].errors[0].value, 1e-4, 1e-12);
 }
@@ -194,6 +194,10 @@ TEST_F(TargetError, TakesTheCheapestThatMeetsIt) {
   const Choice choice = choose_setting(target_);
   EXPECT_EQ(choice.overrides, (std::vector<std::string>{"time.step.alpha=0.2"}));
   EXPECT_NE(choice.explanation.find("studies/results/steps.json"), std::string::npos);
+  EXPECT_NE(choice.explanation.find("(commit abc)"), std::string::npos) << choice.explanation;
+  // 1000 parcels for 1e6 ns each and step, in three times that
+  EXPECT_NE(choice.explanation.find("took 3.0 times its processor time"), std::string::npos)
+      << choice.explanation;
   target_.target = "3e-2";
   EXPECT_EQ(choose_setting(target_).overrides.at(0), "time.step.alpha=0.4");
 }
@@ -218,8 +222,14 @@ TEST_F(TargetError, RefusesWhatWasNotMeasured) {
 }
 
 TEST_F(TargetError, RefusesASceneThatHasChanged) {
-  write("cube.yaml", cube_scene + "# a comment changes nothing\n");
+  write("cube.yaml",
+        "# a comment changes nothing, nor do words and bounds\nscene: {title: Cube}\n" +
+            cube_scene + "expect: [{diagnostic: volume, at_least: 0, source: made up}]\n");
   target_.target = "1%";
+  EXPECT_NO_THROW(choose_setting(target_));
+  write("cube.yaml",
+        "domain: {extent: 1 m, cells: [4, 4, 4]}\n"
+        "time: {end: 10 s, step: {alpha: 0.3}}\n");  // every point has its own alpha
   EXPECT_NO_THROW(choose_setting(target_));
   write("cube.yaml", cube_scene + "numerics: {window_compensation: 0}\n");
   EXPECT_NE(refusal("1%").find("the scene has changed since it was measured"), std::string::npos);

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "study/duration_model.hpp"
+#include "study/study_table.hpp"
+#include "study/work_precision_picture.hpp"
 
 namespace pileus::study {
 namespace {
@@ -47,6 +49,14 @@ TEST(WorkPrecision, OrdersAreExactForPowersWhicheverWayTheLadderRuns) {
   const Findings steps = findings_of({0.4, 0.2, 0.1}, {16e-4, 1e-4, 1e-4 / 16}, {1, 2, 4});
   EXPECT_NEAR(steps.orders(0, 0).local[2], 4, 1e-12);
   EXPECT_NEAR(steps.orders(0, 0).overall, 4, 1e-12);
+}
+
+TEST(WorkPrecision, AKnobThatBeginsAtZeroHasItsPanelOfTheOtherValues) {
+  const Findings betas = findings_of({0, 0.3, 3}, {0.4, 0.2, 0.3}, {1, 1, 1});
+  const Findings words = findings_of({not_a_number, not_a_number}, {0.4, 0.2}, {1, 1});
+  EXPECT_EQ(work_precision_size(betas).width, 2 * work_precision_size(words).width);
+  EXPECT_NE(work_precision_script(betas, 0).find("set xtics (0.3, 3)"), std::string::npos)
+      << work_precision_script(betas, 0);
 }
 
 TEST(WorkPrecision, AFailedPointLeavesAGapInTheOrders) {
@@ -113,6 +123,19 @@ TEST(WorkPrecision, BoundsHoldForEverySeedAndMustSpeakOfSomething) {
   EXPECT_EQ(verdicts[0].value, 0.3);
   EXPECT_TRUE(verdicts[1].passed);  // ln 5/ln 2
   EXPECT_FALSE(verdicts[2].passed);
+}
+
+TEST(WorkPrecision, ALineSumsUpWhatKeepsABoundAndEveryMissHasItsOwn) {
+  Findings findings = findings_of({1, 2, 4, 8}, {0.5, 0.4, 0.2, 0.1}, {1, 2, 3, 4});
+  StudyExpectation bound;
+  bound.norm = "error";
+  bound.high = 0.3;
+  bound.source = "made up";
+  findings.study.expect = {bound};
+  const std::string table = findings_table(findings, judge(findings));
+  EXPECT_NE(table.find("MISS  error (0) = 0.5 <= 0.3  (made up)"), std::string::npos) << table;
+  EXPECT_NE(table.find("MISS  error (1) = 0.4 <= 0.3"), std::string::npos) << table;
+  EXPECT_NE(table.find("pass  error (2 points) = 0.1 to 0.2 <= 0.3"), std::string::npos) << table;
 }
 
 TEST(WorkPrecision, NothingUnmeasuredPasses) {
