@@ -36,9 +36,11 @@ function(pileus_add_plugin name)
   # Exception flags and errno are nobody's business; without them comparisons become vector code.
   target_compile_options(${name} PRIVATE -ffp-contract=off -fno-trapping-math -fno-math-errno)
   # The version script makes every symbol but the entry local, "unique" ones of templates included.
-  target_link_options(
-    ${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--version-script=${PILEUS_PLUGIN_SCRIPT}
-    $<$<NOT:$<BOOL:${PILEUS_SANITIZER}>>:-Wl,--no-undefined>)
+  target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL
+                      -Wl,--version-script=${PILEUS_PLUGIN_SCRIPT})
+  if(NOT PILEUS_SANITIZER)  # the program brings a sanitizer's functions
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  endif()
   set_target_properties(
     ${name}
     PROPERTIES PREFIX lib

@@ -1,5 +1,6 @@
 // Libraries that break a rule are refused by name, with the reason and the remedy.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "host/breadcrumb.hpp"
 #include "host/floating_point.hpp"
@@ -52,6 +53,9 @@ constexpr Refusal refusals[] = {
     {"foreign_id", "is not named after its module 'org.example.hostile'"},
     {"malformed_version", "version is not a semantic version"},
     {"not_utf8", "summary is not UTF-8"},
+    {"doc_not_utf8", "'passive_tracer' doc is not UTF-8"},
+    {"broken_integer", "'rate' is an integer with a default that is no whole number"},
+    {"broken_switch", "'rate' is a switch with a default that is neither 0 nor 1"},
     {"null_licence", "licence is NULL"},
     {"null_create", "create is NULL"},
     {"null_diagnose", "'buoyancy' is derived but the operator has no diagnose"},
@@ -79,6 +83,14 @@ TEST(Loading, refuses_files_that_are_no_libraries) {
             std::string::npos);
   EXPECT_NE(refusal_of("/nonexistent/libx.so").find("No such file"), std::string::npos);
   EXPECT_NE(refusal_of("/usr").find("not a regular file"), std::string::npos);
+}
+
+TEST(Loading, does_not_wait_for_the_writer_of_a_pipe) {
+  const std::string path = testing::TempDir() + "/libpipe.so";
+  std::filesystem::remove(path);
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_NE(refusal_of(path).find("not a regular file"), std::string::npos);
+  std::filesystem::remove(path);
 }
 
 TEST(LoadingDeathTest, crash_while_loading_names_the_library) {

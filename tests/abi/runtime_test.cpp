@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "base/parallel.hpp"
 #include "coupling/operator_sequence.hpp"
 #include "host/breadcrumb.hpp"
 #include "host/floating_point.hpp"
@@ -80,8 +81,14 @@ constexpr Failure failures[] = {
     {"throws_in_apply", "an exception left the library (no apply)"},
     {"writes_nan", "parcel 1001, passive_tracer = nan"},
     {"writes_infinity", "parcel 1001, passive_tracer = inf"},
+    {"writes_infinity_in_any_range", "parcel 1001, passive_tracer = inf"},
+    {"sets_nan_in_init", "in init at step 0, t = 0 s, dt = 0 s; parcel 1001, passive_tracer = nan"},
+    {"books_nan", "it booked a source of water that is not finite"},
+    {"throws_in_loop", "failed: no loop"},
+    {"changes_arithmetic_in_loop", "changed the floating-point mode"},
     {"writes_out_of_range", "parcel 1001, passive_tracer = 3.5"},
     {"always_retries", "asked for a smaller step"},
+    {"keeps_its_values", "the rate is 1 in apply"},
     {"unknown_status", "returned the unknown status 99"},
     {"unterminated_text", "failed: xxxx"},
     {"changes_arithmetic_in_apply", "changed the floating-point mode"},
@@ -148,6 +155,30 @@ TEST(CrashDeathTest, names_operator_phase_step_and_block) {
   EXPECT_DEATH(crash("aborts_in_apply"),
                "pileus: fatal: SIGABRT in plugin org.example.hostile, phase apply, step 7, "
                "block [012]");
+}
+
+/// The loop's other threads are not the one that the plugin was called on.
+TEST(CrashDeathTest, in_a_loop_over_all_threads_is_named_too) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto crash = [] {
+    host::install_crash_handler();
+    omp_set_num_threads(3);
+    HostileRun("crashes_in_loop").run();
+  };
+  EXPECT_DEATH(crash(),
+               "pileus: fatal: SIGSEGV in plugin org.example.hostile, phase apply \\(library");
+}
+
+TEST(CrashDeathTest, ending_the_program_from_a_hook_is_the_failure_of_a_plugin) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto run = [] {
+    host::install_crash_handler();
+    omp_set_num_threads(1);
+    HostileRun("exits_in_apply").run();
+  };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(static_cast<int>(ExitCode::plugin)),
+              "pileus: fatal: the program was ended in plugin org.example.hostile, phase apply, "
+              "step 7, block 0");
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ typedef struct pileus_block {
   double* ledger;          /* per declared budget: amount brought in from outside */
 } pileus_block;
 
-typedef struct pileus_values { /* validated against the declarations before it is given */
+typedef struct pileus_values { /* validated before it is given; lives as long as `self` */
   uint32_t size, count;
   const double* number;      /* also integers (exact to 2^53), switches, choice indices */
   const char* const* text;   /* TEXT and CHOICE, else NULL */

@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -80,7 +81,7 @@ class Block {
   const pileus_block& raw() const { return raw_; }
 
   /// True if the quantity exists in this run (its `when` holds).
-  bool has(Slot slot) const { return raw_.views[slot.index].data != nullptr; }
+  bool has(Slot slot) const { return view(slot).data != nullptr; }
   /// Values of a quantity declared with reads, updates or owns; element k belongs to parcel k.
   const double* in(Slot slot) const { return dense<const double>(slot, PILEUS_READ); }
   /// Values of a quantity declared with updates, owns or derives.
@@ -89,7 +90,7 @@ class Block {
   /// x + cells[0]·y belongs to that column of the mesh, and there are elements(slot) of them.
   double* accumulator(Slot slot) const { return dense<double>(slot, PILEUS_ADD); }
   /// Number of values of a quantity: parcels, or columns of the mesh for one of the ground.
-  std::int64_t elements(Slot slot) const { return raw_.views[slot.index].count; }
+  std::int64_t elements(Slot slot) const { return view(slot).count; }
   /// The same for quantities with components or another element type.
   template <class T>
   Strided<const T> strided_in(Slot slot) const {
@@ -113,7 +114,10 @@ class Block {
   }
 
   /// Books an amount brought in from outside (positive) or lost to it.
-  void book(Budget budget, double amount) const { raw_.ledger[budget.index] += amount; }
+  void book(Budget budget, double amount) const {
+    if (budget.index == Budget{}.index) throw Failure("a budget was used that describe left out");
+    raw_.ledger[budget.index] += amount;
+  }
 
   /// Reports increments cut by limiters and values moved into their range, for the run's ledger.
   void repaired(std::uint64_t count) const {
@@ -122,25 +126,30 @@ class Block {
 
   /// Room for `count` values until the call returns; contents undefined.
   std::span<double> scratch(std::size_t count) const {
+    if (count > std::numeric_limits<std::size_t>::max() / sizeof(double)) throw std::bad_alloc();
     void* room = host_.scratch(&host_, count * sizeof(double));
     if (room == nullptr && count > 0) throw std::bad_alloc();
     return {static_cast<double*>(room), count};
   }
 
  private:
+  const pileus_view& view(Slot slot) const {
+    if (slot.index == Slot{}.index) throw Failure("a quantity was used that describe left out");
+    return raw_.views[slot.index];
+  }
   const pileus_view& checked(Slot slot, std::uint32_t access) const {
-    const pileus_view& view = raw_.views[slot.index];
-    if (view.data == nullptr) throw Failure("a quantity was used that does not exist in this run");
-    if ((view.access & access) == 0) throw Failure("a quantity was used against its declaration");
-    return view;
+    const pileus_view& found = view(slot);
+    if (found.data == nullptr) throw Failure("a quantity was used that does not exist in this run");
+    if ((found.access & access) == 0) throw Failure("a quantity was used against its declaration");
+    return found;
   }
   template <class T>
   T* dense(Slot slot, std::uint32_t access) const {
-    const pileus_view& view = checked(slot, access);
-    if (view.type != PILEUS_F64 || view.stride != sizeof(double)) {
+    const pileus_view& found = checked(slot, access);
+    if (found.type != PILEUS_F64 || found.stride != sizeof(double)) {
       throw Failure("a quantity that is not a dense array of doubles was used as one");
     }
-    return static_cast<T*>(view.data);
+    return static_cast<T*>(found.data);
   }
 
   const pileus_block& raw_;
@@ -208,7 +217,8 @@ class Operator {
         *error = failure.record;
         error->size = size;
       }
-      return failure.status;
+      // What was thrown did not succeed, whatever its status says.
+      return failure.status != PILEUS_OK ? failure.status : pileus_status{PILEUS_E_INTERNAL};
     } catch (const std::bad_alloc&) {
       return say(error, "out of memory", PILEUS_E_MEMORY);
     } catch (const std::exception& other) {
@@ -283,7 +293,11 @@ class Operator {
     }
     if constexpr (requires(Self & s, const char* id) { s.extension(id); }) {
       op.extension = [](void* self, const char* id) -> const void* {
-        return static_cast<Self*>(self)->extension(id);
+        try {
+          return static_cast<Self*>(self)->extension(id);
+        } catch (...) {
+          return nullptr;
+        }
       };
     }
   }

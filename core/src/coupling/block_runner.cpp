@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -120,7 +121,7 @@ bool BlockRunner::diagnose(std::size_t which, const pileus_step& step, const Par
   return false;
 }
 
-/// Checks everything apply may have changed against its declared range.
+/// Checks everything apply may have changed against its declared range, and what it booked.
 bool BlockRunner::writes_violate(const Attempt& a, std::span<const std::uint32_t> list,
                                  host::CallResult& result) const {
   for (const std::size_t s : a.bound.written) {
@@ -135,7 +136,35 @@ bool BlockRunner::writes_violate(const Attempt& a, std::span<const std::uint32_t
                  {}, slot, s, nullptr, result))
       return true;
   }
+  const std::vector<std::string>& budgets = a.bound.entry->table->budgets;
+  for (std::size_t b = 0; b < budgets.size(); ++b) {
+    if (std::isfinite(a.work.attempt[b])) continue;
+    result.status = PILEUS_E_NUMERIC;
+    std::snprintf(result.error.text, sizeof result.error.text,
+                  "it booked a source of %s that is not finite", budgets[b].c_str());
+    return true;
+  }
   return false;
+}
+
+host::CallResult BlockRunner::init(std::size_t which, const pileus_step& step,
+                                   const ParcelRange& range, Workspace& work) const {
+  const BoundOperator& bound = operators_[which];
+  if (bound.op().init == nullptr) return bound.instance->init(step, {});
+  const auto column = [&](std::size_t w) {
+    return store_.column(bound.slots[bound.written[w]].column) + range.begin;
+  };
+  std::vector<std::vector<double>> before;
+  for (std::size_t w = 0; w < bound.written.size(); ++w)
+    before.emplace_back(column(w), column(w) + range.count);
+  std::fill(work.attempt.begin(), work.attempt.end(), 0.0);
+  const Attempt a{which, bound, step, range, work, block(which, range, false, work)};
+  host::CallResult result = bound.instance->init(step, a.record);
+  if (!result.ok() || !writes_violate(a, {}, result)) return result;
+  // As it was, so that the values it was given are not taken for those it wrote.
+  for (std::size_t w = 0; w < bound.written.size(); ++w)
+    std::copy(before[w].begin(), before[w].end(), column(w));
+  return result;
 }
 
 host::CallResult BlockRunner::call_once(const Attempt& a, std::span<const std::uint32_t> list,

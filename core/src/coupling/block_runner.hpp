@@ -34,6 +34,10 @@ class BlockRunner {
               SurfaceFields& surface, const pileus_grid* grid, const MeshQuantities* mesh)
       : operators_(operators), store_(store), surface_(surface), grid_(grid), mesh_(mesh) {}
 
+  /// Runs the init hook and checks what it wrote.
+  host::CallResult init(std::size_t which, const pileus_step& step, const ParcelRange& range,
+                        Workspace& work) const;
+
   /// Runs the diagnose hook of operator `which`. False: work.failure was set; what it derived is
   /// not to be used.
   bool diagnose(std::size_t which, const pileus_step& step, const ParcelRange& range,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "base/error.hpp"
@@ -68,8 +69,9 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
   for (std::size_t i = 0; i < table.quantities.size(); ++i) {
     const pileus_quantity& row = table.quantities[i];
     BoundSlot slot;
-    slot.low = row.low;
-    slot.high = row.high;
+    // A range without ends still holds nothing infinite.
+    slot.low = std::max(row.low, std::numeric_limits<double>::lowest());
+    slot.high = std::min(row.high, std::numeric_limits<double>::max());
     slot.derived = row.nature == PILEUS_DERIVED;
     slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
     const bool exists = bound.entry->exists(i);
@@ -155,8 +157,7 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   const bool lend_mesh = scope == PILEUS_GLOBAL && mesh.extension != nullptr;
   bound.instance = std::make_unique<host::Instance>(
       entry.table, host::Lent{stop, lend_mesh ? mesh.extension->table() : nullptr});
-  host::ParameterValues values = entry.values;
-  bound.instance->configure(values);
+  bound.instance->configure(entry.values);
   return bound;
 }
 

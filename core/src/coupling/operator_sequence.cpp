@@ -180,8 +180,7 @@ void OperatorSequence::start(const StepTime& step, bool new_run) {
       std::fill_n(store_->column(bound.slots[s].column), store_->size(), row.initial);
     }
     const pileus_step record = step_record(bound, step, false);
-    const pileus_block whole = runner_->block(which, all_parcels(), false, whole_);
-    const host::CallResult result = bound.instance->init(record, whole);
+    const host::CallResult result = runner_->init(which, record, all_parcels(), whole_);
     if (!result.ok()) fail({-1, which, false, 1, record, result, {}}, "init");
   }
   population_changed();

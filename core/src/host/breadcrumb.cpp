@@ -6,7 +6,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
+
+#include "base/error.hpp"
 
 namespace pileus::host {
 namespace {
@@ -81,6 +84,16 @@ class Line {
   std::size_t length_ = 0;
 };
 
+void name_plugin(Line& line) {
+  line << " in plugin ";
+  if (current.operator_id != nullptr) line << current.operator_id << ", ";
+  line << "phase " << current.phase;
+  if (current.block >= 0) {
+    line << ", step " << current.step << ", block " << static_cast<std::uint64_t>(current.block);
+  }
+  line << " (library " << current.library << ")";
+}
+
 void on_fatal_signal(int number) {
   std::size_t which = 0;
   while (which + 1 < fatal_signals.size() && fatal_signals[which] != number) ++which;
@@ -89,20 +102,29 @@ void on_fatal_signal(int number) {
   if (current.phase == nullptr) {
     line << " outside any plugin";
   } else {
-    line << " in plugin ";
-    if (current.operator_id != nullptr) line << current.operator_id << ", ";
-    line << "phase " << current.phase;
-    if (current.block >= 0) {
-      line << ", step " << current.step << ", block " << static_cast<std::uint64_t>(current.block);
-    }
-    line << " (library " << current.library << ")";
+    name_plugin(line);
   }
   line.write_out();
   ::sigaction(number, &previous_actions[which], nullptr);
   ::raise(number);
 }
 
+/// Scientific code of old ends the program where it knows no further (Fortran's STOP); that must
+/// not look like the end of a run.
+void on_exit() {
+  if (current.phase == nullptr) return;
+  Line line;
+  line << "pileus: fatal: the program was ended";
+  name_plugin(line);
+  line.write_out();
+  ::_exit(static_cast<int>(ExitCode::plugin));
+}
+
 }  // namespace
+
+Breadcrumb current_breadcrumb() {
+  return current;
+}
 
 BreadcrumbScope::BreadcrumbScope(const Breadcrumb& crumb) : outer_(current) {
   if (installed) {
@@ -125,6 +147,7 @@ void install_crash_handler() {
   for (std::size_t i = 0; i < fatal_signals.size(); ++i) {
     ::sigaction(fatal_signals[i], &action, &previous_actions[i]);
   }
+  std::atexit(on_exit);
   installed = true;
 }
 

@@ -14,6 +14,9 @@ struct Breadcrumb {
   std::int64_t block = -1;  // −1: not a call on a block
 };
 
+/// The crumb of this thread, for threads that work on its behalf.
+Breadcrumb current_breadcrumb();
+
 /// Lays a crumb for the time of a call.
 class BreadcrumbScope {
  public:
@@ -28,7 +31,8 @@ class BreadcrumbScope {
 
 /// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT that prints the crumb of the
 /// thread concerned on standard error and raises the signal again under the action that was there
-/// before, so that a core dump or a sanitizer's report still comes. Calling it again does nothing.
+/// before, so that a core dump or a sanitizer's report still comes. A plugin that calls exit() is
+/// named too, and the exit code is then that of a failed plugin. Calling it again does nothing.
 void install_crash_handler();
 
 }  // namespace pileus::host

@@ -8,6 +8,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Paths, and notes of libraries that were not loaded, may hold any bytes.
+std::string printed(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 Json text_or_null(const char* text) {
   return text != nullptr ? Json(text) : Json();
 }
@@ -119,7 +124,7 @@ std::string describe_json(const Library& library) {
   for (const OperatorTable& table : library.operators) {
     json["operators"].push_back(operator_json(table));
   }
-  return json.dump(2);
+  return printed(json);
 }
 
 std::string describe_candidates_json(const SearchPath& search) {
@@ -134,7 +139,7 @@ std::string describe_candidates_json(const SearchPath& search) {
     }
     json.push_back(std::move(entry));
   }
-  return json.dump(2);
+  return printed(json);
 }
 
 }  // namespace pileus::host

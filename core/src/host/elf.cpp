@@ -113,7 +113,8 @@ void read_exports(const Bytes& file, const Elf64_Shdr& table, const Elf64_Shdr& 
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // Without waiting: a pipe in a folder of plugins would otherwise hold the program for good.
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
     struct stat status {};
     const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);

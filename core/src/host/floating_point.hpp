@@ -19,6 +19,10 @@ inline std::uint32_t arithmetic_mode() {
 #endif
 }
 
+/// What is said of code that leaves another mode behind.
+inline constexpr const char* changed_arithmetic =
+    "it changed the floating-point mode (rounding, denormals or traps)";
+
 /// Restores the whole environment at the end of its scope.
 class FloatingPointGuard {
  public:

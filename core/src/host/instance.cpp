@@ -78,8 +78,7 @@ CallResult Instance::call(LifeCall which, std::uint64_t step, std::int64_t block
   if (arithmetic_mode() != mode) {
     std::fesetenv(FE_DFL_ENV);
     result.status = PILEUS_E_INTERNAL;
-    std::snprintf(result.error.text, sizeof result.error.text,
-                  "it changed the floating-point mode (rounding, denormals or traps)");
+    std::snprintf(result.error.text, sizeof result.error.text, "%s", changed_arithmetic);
   }
   return result;
 }
@@ -109,8 +108,8 @@ Instance::~Instance() {
   });
 }
 
-void Instance::configure(ParameterValues& values) {
-  const pileus_values& view = values.view();
+void Instance::configure(ParameterValues values) {
+  const pileus_values& view = values_.emplace(std::move(values)).view();
   const CallResult result = call(LifeCall::configure, 0, -1, [&](pileus_error* error) {
     return table_->op.configure(self_, &view, error);
   });

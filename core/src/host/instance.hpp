@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ class Instance {
   std::uint64_t repairs() const { return services_.repairs(); }
 
   /// Hands over the parameters. Errors  Error(ExitCode::plugin) with the plugin's own sentence
-  void configure(ParameterValues& values);
+  void configure(ParameterValues values);
 
   /// Starts a new run; operators without the hook are ready at once.
   CallResult init(const pileus_step& step, const pileus_block& whole);
@@ -59,6 +60,7 @@ class Instance {
 
   std::shared_ptr<const OperatorTable> table_;
   Services services_;
+  std::optional<ParameterValues> values_;  // plugins may keep what they were shown
   void* self_ = nullptr;
   LifeState state_ = LifeState::none;
 };

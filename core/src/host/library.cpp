@@ -139,8 +139,12 @@ void read_module(const pileus_module& module, Library& library) {
         "it declares no operators (a describe function that throws has this effect too)");
   }
   std::set<std::string> ids;
-  for (const pileus_operator* const* row = module.operators;
-       row != nullptr && *row != nullptr && library.operators.size() < longest_list; ++row) {
+  for (const pileus_operator* const* row = module.operators; row != nullptr && *row != nullptr;
+       ++row) {
+    if (library.operators.size() == longest_list) {
+      complaints.push_back("its list of operators has no end: it must close with a null pointer");
+      break;
+    }
     std::vector<std::string> own;
     OperatorTable table = read_operator(*row, own);
     const std::string id = table.op.id != nullptr ? table.op.id : "";

@@ -16,6 +16,9 @@ namespace {
 constexpr std::array<std::string_view, 6> reserved_names = {"use",   "name",     "substeps",
                                                             "every", "on_error", "guard"};
 
+/// Up to here every whole number is a double.
+constexpr double largest_integer = 0x1p53;
+
 void check_identity(const OperatorTable& t, Complaints& c) {
   const pileus_operator& op = t.op;
   c.require(is_reverse_dns(c.text(op.id, "id")), "id",
@@ -78,6 +81,9 @@ void check_quantity(const pileus_quantity& q, const std::string& place, const Op
   c.require(is_identifier(c.text(q.name, place + " name")), place,
             "has a name that is not lower-case words joined by underscores");
   c.text(q.units, place + " units");
+  c.optional_text(q.weight, place + " weight");
+  c.optional_text(q.budget, place + " budget");
+  c.optional_text(q.doc, place + " doc");
   c.require(words::place.knows(q.place), place, "has an unknown place");
   c.require(words::type.knows(q.type), place, "has an unknown type");
   c.require(words::nature.knows(q.nature), place, "has an unknown nature");
@@ -136,11 +142,21 @@ void check_parameter(const pileus_parameter& p, const std::string& place, Compla
   c.require(std::find(reserved_names.begin(), reserved_names.end(), name) == reserved_names.end(),
             place, "has a name that is reserved for the scene");
   c.text(p.units, place + " units");
+  c.optional_text(p.doc, place + " doc");
+  c.optional_text(p.text_fallback, place + " default");
   c.require(words::parameter.knows(p.type), place, "has an unknown type");
   c.require(p.knob <= 1, place, "has a knob that is neither 0 nor 1");
   if (p.type == PILEUS_CHOICE) return check_choices(p, place, c);
   if (p.type == PILEUS_TEXT) return;
   c.require(std::isfinite(p.fallback), place, "has a default that is not finite");
+  if (p.type == PILEUS_SWITCH) {
+    c.require(p.fallback == 0 || p.fallback == 1, place,
+              "is a switch with a default that is neither 0 nor 1");
+  }
+  if (p.type == PILEUS_INTEGER) {
+    c.require(p.fallback == std::trunc(p.fallback) && std::abs(p.fallback) <= largest_integer,
+              place, "is an integer with a default that is no whole number up to 2^53");
+  }
   c.require(p.low <= p.high, place, "has a range whose low end is not below its high end");
   if (p.low < p.high) {
     c.require(p.fallback >= p.low && p.fallback <= p.high, place, "has a default out of its range");
@@ -284,7 +300,10 @@ void check_rows(OperatorTable& t, Complaints& c) {
   for (std::size_t i = 0; i < t.active_if.size(); ++i) {
     check_condition(t.active_if[i], "activity condition " + std::to_string(i), t, c);
   }
-  for (const pileus_reference& row : t.references) c.text(row.text, "reference text");
+  for (const pileus_reference& row : t.references) {
+    c.text(row.text, "reference text");
+    c.optional_text(row.doi, "reference doi");
+  }
   check_unique_quantities(t.quantities, c);
   check_unique_parameters(t.parameters, c);
 }

@@ -25,6 +25,10 @@ class Complaints {
   }
   /// Requires a non-empty UTF-8 text; returns it, or an empty one.
   std::string_view text(const char* value, const std::string& place);
+  /// The same of a text that may be left out.
+  void optional_text(const char* value, const std::string& place) {
+    if (value != nullptr && *value != '\0') text(value, place);
+  }
 
  private:
   std::vector<std::string>& list_;

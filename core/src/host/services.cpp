@@ -1,7 +1,9 @@
 #include "host/services.hpp"
 
 #include <chrono>
+#include <cstdio>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <utility>
 
@@ -9,6 +11,8 @@
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "host/breadcrumb.hpp"
+#include "host/floating_point.hpp"
 
 namespace pileus::host {
 namespace {
@@ -17,29 +21,40 @@ namespace {
 /// a call that needed several they are joined, so that steady use is one chunk and no allocation.
 class ScratchArena {
  public:
+  /// How far the memory is given out.
+  struct Mark {
+    std::size_t chunk = 0, used = 0;
+  };
+
   void* take(std::size_t bytes) {
     const std::size_t padded = (bytes + cache_line_bytes - 1) / cache_line_bytes * cache_line_bytes;
-    if (chunks_.empty() || chunks_.back().size() - used_ < padded) {
-      chunks_.emplace_back(padded < smallest ? smallest : padded);
-      used_ = 0;
-    }
-    void* memory = chunks_.back().data() + used_;
-    used_ += padded;
+    while (at_.chunk < chunks_.size() && chunks_[at_.chunk].size() - at_.used < padded)
+      at_ = {at_.chunk + 1, 0};
+    if (at_.chunk == chunks_.size()) chunks_.emplace_back(padded < smallest ? smallest : padded);
+    void* memory = chunks_[at_.chunk].data() + at_.used;
+    at_.used += padded;
     return memory;
   }
-  void release() {
-    used_ = 0;
+  Mark mark() const { return at_; }
+  /// Takes back what was given out since the mark.
+  void rewind(const Mark& mark) { at_ = mark; }
+  void release() noexcept {
+    at_ = {};
     if (chunks_.size() < 2) return;
     std::size_t total = 0;
     for (const auto& chunk : chunks_) total += chunk.size();
     chunks_.clear();
-    chunks_.emplace_back(total);
+    try {
+      chunks_.emplace_back(total);
+    } catch (const std::bad_alloc&) {
+      return;  // no chunk is as good: the next call allocates what it needs, or is told
+    }
   }
 
  private:
   static constexpr std::size_t smallest = 65536;
   std::vector<AlignedArray<std::byte>> chunks_;
-  std::size_t used_ = 0;
+  Mark at_;
 };
 
 thread_local ScratchArena arena;
@@ -64,21 +79,47 @@ struct ChunkFailure {
   pileus_error error;
 };
 
+ChunkFailure chunk_failure(pileus_status status, const char* text) {
+  ChunkFailure failure{status, {}};
+  failure.error.size = sizeof(pileus_error);
+  failure.error.slot = -1;
+  std::snprintf(failure.error.text, sizeof failure.error.text, "%s", text);
+  return failure;
+}
+
+/// One chunk of a loop, on whatever thread: a crash in it names the operator that started the loop,
+/// its scratch memory goes back, and the thread's arithmetic stays as it was.
+void run_chunk(const Breadcrumb& crumb, pileus_range_fn body, void* user, std::size_t begin,
+               std::size_t end) {
+  const BreadcrumbScope scope(crumb);
+  const std::uint32_t mode = arithmetic_mode();
+  const ScratchArena::Mark mark = arena.mark();
+  ChunkFailure failure = chunk_failure(PILEUS_OK, "");
+  try {
+    failure.status = body(user, static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end),
+                          &failure.error);
+  } catch (const std::exception& exception) {
+    failure = chunk_failure(PILEUS_E_INTERNAL, exception.what());
+  } catch (...) {
+    failure = chunk_failure(PILEUS_E_INTERNAL, "an exception that is no std::exception");
+  }
+  arena.rewind(mark);
+  if (arithmetic_mode() != mode) {
+    std::fesetenv(FE_DFL_ENV);
+    failure = chunk_failure(PILEUS_E_INTERNAL, changed_arithmetic);
+  }
+  if (failure.status != PILEUS_OK) throw failure;
+}
+
 pileus_status loop_in_parallel(const pileus_host*, std::int64_t n, std::int64_t grain,
                                pileus_range_fn body, void* user, pileus_error* error) {
   if (n <= 0) return PILEUS_OK;
   const auto chunk = static_cast<std::size_t>(grain > 0 ? grain : 1);
   try {
+    const Breadcrumb crumb = current_breadcrumb();
     parallel_chunks(
         static_cast<std::size_t>(n),
-        [&](std::size_t begin, std::size_t end) {
-          ChunkFailure failure{PILEUS_OK, {}};
-          failure.error.size = sizeof(pileus_error);
-          failure.error.slot = -1;
-          failure.status = body(user, static_cast<std::int64_t>(begin),
-                                static_cast<std::int64_t>(end), &failure.error);
-          if (failure.status != PILEUS_OK) throw failure;
-        },
+        [&](std::size_t begin, std::size_t end) { run_chunk(crumb, body, user, begin, end); },
         chunk);
     return PILEUS_OK;
   } catch (const ChunkFailure& failure) {
@@ -173,7 +214,7 @@ std::vector<Span> Services::spans() const {
   return all;
 }
 
-void release_scratch() {
+void release_scratch() noexcept {
   arena.release();
 }
 

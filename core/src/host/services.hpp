@@ -64,6 +64,6 @@ class Services {
 };
 
 /// Gives back all scratch memory of this thread; called before each outermost call into a plugin.
-void release_scratch();
+void release_scratch() noexcept;
 
 }  // namespace pileus::host

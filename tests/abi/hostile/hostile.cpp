@@ -2,6 +2,7 @@
 #include <pileus/abi.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -59,6 +60,11 @@ pileus_quantity tracer_row() {
   q.low = is("inverted_range") ? 2.0 : 0.0;
   q.high = 1.0;
   q.initial = is("initial_out_of_range") ? 5.0 : 0.5;
+  q.doc = is("doc_not_utf8") ? "\xff\xfe" : nullptr;
+  if (is("writes_infinity_in_any_range")) {
+    q.low = -std::numeric_limits<double>::infinity();
+    q.high = std::numeric_limits<double>::infinity();
+  }
   return q;
 }
 
@@ -87,6 +93,8 @@ pileus_parameter rate_row() {
   p.fallback = is("default_out_of_range") ? 7.0 : 1.0;
   p.low = 0.0;
   p.high = 2.0;
+  if (is("broken_integer")) p.type = PILEUS_INTEGER, p.fallback = 0.5;
+  if (is("broken_switch")) p.type = PILEUS_SWITCH, p.fallback = 2.0;
   return p;
 }
 
@@ -95,18 +103,26 @@ const pileus_quantity* const quantities[] = {&tracer, &derived, nullptr};
 const pileus_parameter rate = rate_row();
 const pileus_parameter* const parameters[] = {&rate, nullptr};
 
-pileus_status create(const pileus_host*, void** self, pileus_error*) {
+const char* const budgets[] = {is("books_nan") ? "water" : nullptr, nullptr};
+
+const pileus_host* core = nullptr;
+const pileus_values* given = nullptr;
+
+pileus_status create(const pileus_host* host, void** self, pileus_error*) {
   if (is("throws_in_create")) throw std::runtime_error("no create");
   static int instance;
   *self = &instance;
+  core = host;
   return PILEUS_OK;
 }
-pileus_status configure(void*, const pileus_values*, pileus_error*) {
+pileus_status configure(void*, const pileus_values* values, pileus_error*) {
+  given = values;
   if (is("throws_in_configure")) throw 42;
   return is("refuses_configure") ? PILEUS_E_CONFIG : PILEUS_OK;
 }
-pileus_status init(void*, const pileus_step*, const pileus_block*, pileus_error*) {
+pileus_status init(void*, const pileus_step*, const pileus_block* whole, pileus_error*) {
   if (is("throws_in_init")) throw std::runtime_error("no init");
+  if (is("sets_nan_in_init")) static_cast<double*>(whole->views[0].data)[1] = nan;
   return PILEUS_OK;
 }
 pileus_status prepare(void*, const pileus_step*, const pileus_block*, double* limit,
@@ -123,13 +139,28 @@ pileus_status diagnose(void*, const pileus_step*, const pileus_block* block, pil
   if (is("derives_nan")) b[block->count / 2] = nan;
   return PILEUS_OK;
 }
+/// A chunk of a loop over all threads.
+pileus_status chunk(void*, int64_t, int64_t, pileus_error*) {
+  if (is("throws_in_loop")) throw std::runtime_error("no loop");
+  if (is("crashes_in_loop")) crash();
+  if (is("changes_arithmetic_in_loop")) change_arithmetic();
+  return PILEUS_OK;
+}
+
 pileus_status apply(void*, const pileus_step*, const pileus_block* block, pileus_error* error) {
   double* q = static_cast<double*>(block->views[0].data);
   if (is("throws_in_apply")) throw std::runtime_error("no apply");
   if (is("aborts_in_apply")) std::abort();
+  if (is("exits_in_apply")) std::exit(0);
+  if (is("books_nan")) block->ledger[0] = nan;
   if (is("writes_nan")) q[1] = nan;
-  if (is("writes_infinity")) q[1] = std::numeric_limits<double>::infinity();
+  if (is("writes_infinity") || is("writes_infinity_in_any_range"))
+    q[1] = std::numeric_limits<double>::infinity();
   if (is("writes_out_of_range")) q[1] = 3.5;
+  if (is("keeps_its_values")) {
+    std::snprintf(error->text, sizeof error->text, "the rate is %g", given->number[0]);
+    return PILEUS_E_UNSUPPORTED;
+  }
   if (is("always_retries")) return PILEUS_RETRY;
   if (is("unknown_status")) return 99;
   if (is("unterminated_text")) {
@@ -137,6 +168,8 @@ pileus_status apply(void*, const pileus_step*, const pileus_block* block, pileus
     return PILEUS_E_INTERNAL;
   }
   if (is("changes_arithmetic_in_apply")) change_arithmetic();
+  if (is("throws_in_loop") || is("crashes_in_loop") || is("changes_arithmetic_in_loop"))
+    return core->parallel_for(core, block->count, 64, chunk, nullptr, error);
   return PILEUS_OK;
 }
 void destroy(void*) {
@@ -147,7 +180,9 @@ pileus_operator make_operator() {
   pileus_operator op{};
   op.size = is("short_operator") ? 16 : sizeof op;
   op.repeatability = PILEUS_REPEAT_RANKS;
-  op.scope = is("unknown_scope") ? 9 : PILEUS_LOCAL;
+  const bool loops =
+      is("throws_in_loop") || is("crashes_in_loop") || is("changes_arithmetic_in_loop");
+  op.scope = is("unknown_scope") ? 9 : loops ? PILEUS_GLOBAL : PILEUS_LOCAL;
   op.form = PILEUS_FLOW;
   op.flags = is("unknown_flag") ? 1u << 30 : 0u;
   op.id = is("malformed_id") ? "Hostile Plugin"
@@ -161,6 +196,7 @@ pileus_operator make_operator() {
   op.licence = is("null_licence") ? nullptr : "MIT";
   op.quantities = quantities;
   op.parameters = parameters;
+  op.budgets = budgets;
   op.create = is("null_create") ? nullptr : create;
   op.configure = configure;
   op.init = init;
