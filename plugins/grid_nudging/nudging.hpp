@@ -32,7 +32,8 @@ class Profile {
     return std::all_of(values_.begin(), values_.end(), [](double v) { return v == 0; });
   }
   double operator()(double z) const {
-    if (values_.size() == 1 || z <= heights_.front()) return values_.front();
+    // A height that is not a number is at the lower end: it must not lead outside the list.
+    if (values_.size() == 1 || !(z > heights_.front())) return values_.front();
     if (z >= heights_.back()) return values_.back();
     const auto above = std::upper_bound(heights_.begin(), heights_.end(), z) - heights_.begin();
     const auto k = static_cast<std::size_t>(above);

@@ -186,7 +186,8 @@ class LangevinMixing : public Operator<LangevinMixing> {
   Local<D> profile(Param param, double z) const {
     const auto heights = list(profile_height_), values = list(param);
     Local<D> result;
-    if (values.size() == 1 || z <= heights.front()) {
+    // A height that is not a number is at the lower end: it must not lead outside the list.
+    if (values.size() == 1 || !(z > heights.front())) {
       result.value = values.front();
     } else if (z >= heights.back()) {
       result.value = values.back();

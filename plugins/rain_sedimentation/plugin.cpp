@@ -73,7 +73,8 @@ class RainSedimentation : public Operator<RainSedimentation> {
       if (grid_.cells[axis] == 1) return 0;
       const double place = std::floor((x - grid_.origin[axis]) / grid_.spacing[axis]);
       const auto last = static_cast<double>(grid_.cells[axis] - 1);
-      return static_cast<std::int64_t>(std::clamp(place, 0.0, last));
+      // A place that is not a number is in the first cell: it must not lead outside the mesh.
+      return static_cast<std::int64_t>(place > 0 ? std::min(place, last) : 0.0);
     }
     const pileus_grid& grid_;
   };

@@ -245,7 +245,8 @@ void SimulationOf<D>::restore(const output::NamedData& data) {
   const auto& zero = data.counters.at("zero_wall_vorticity");
   const auto& tiles = data.counters.at("tile_begin");
   if (data.arrays.at("domain") != corners() || tiles.size() != tiling_.tiles().size() + 1 ||
-      tiles.back() != store_->size())
+      tiles.front() != 0 || tiles.back() != store_->size() ||
+      !std::is_sorted(tiles.begin(), tiles.end()))
     throw Error(ExitCode::usage,
                 "The checkpoint belongs to another domain or mesh than the scene describes.");
   tile_begin_.assign(tiles.begin(), tiles.end());

@@ -38,8 +38,12 @@ class Checker {
   }
 
   void integer(const ParameterDeclaration& declared, const RawValue& raw, double& value) {
+    constexpr std::int64_t largest = std::int64_t{1} << 53;  // plugins get it as a double
     const auto whole = raw.is_list ? std::optional<std::int64_t>() : read_integer(raw.text);
-    if (!whole)
+    if (whole && (*whole > largest || *whole < -largest))
+      report(declared, raw.where, fmt::format("expected at most 2^53, found {}", found(raw)),
+             raw.text);
+    else if (!whole)
       report(declared, raw.where, fmt::format("expected a whole number, found {}", found(raw)),
              raw.text);
     else if (in_range(declared, static_cast<double>(*whole), raw.text, raw.where))

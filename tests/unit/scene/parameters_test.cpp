@@ -38,6 +38,25 @@ Checked check(const std::string& parameters) {
   return result;
 }
 
+/// Plugins get integers as doubles, which hold every whole number up to 2^53 and no further.
+TEST(Parameters, AreIntegersThatADoubleHolds) {
+  const auto problems_of = [](const char* number) {
+    const Scene scene = scene_of(cube + "operators:\n  - {use: org.a.count, n: " + number + "}\n");
+    Problems problems;
+    const std::vector<ParameterDeclaration> declared = {
+        {.name = "n", .type = ParameterType::integer}};
+    const auto read = validate_parameters(scene.operators[0], declared, {}, problems);
+    if (problems.empty()) {
+      EXPECT_EQ(std::to_string(static_cast<std::int64_t>(read.number[0])), number);
+    }
+    return problems.render();
+  };
+  EXPECT_EQ(problems_of("9007199254740992"), "");
+  EXPECT_EQ(problems_of("-9007199254740992"), "");
+  for (const char* number : {"9007199254740993", "-9007199254740993", "9223372036854775807"})
+    EXPECT_NE(problems_of(number).find("at most 2^53"), std::string::npos) << number;
+}
+
 TEST(Parameters, TakeDefaultsUnitsAndConstants) {
   const Checked plain = check("");
   EXPECT_EQ(plain.problems, "");
