@@ -1,6 +1,11 @@
 #include "coupling/mesh_extension.hpp"
 
+#include <cstdint>
 #include <cstdio>
+#include <new>
+
+#include "base/aligned_array.hpp"
+#include "base/parallel.hpp"
 
 namespace pileus::coupling {
 namespace {
@@ -10,11 +15,28 @@ pileus_status refuse(pileus_error* error, const char* text) {
   return PILEUS_E_INPUT;
 }
 
+/// Vector code reads and writes whole cache lines: elsewhere it would end the process.
+bool is_aligned(const void* pointer) {
+  return reinterpret_cast<std::uintptr_t>(pointer) % cache_line_bytes == 0;
+}
+
 /// A sentence on what is wrong with a call, or null.
-const char* complaint(std::int64_t parcels, const parcels::Store& store, const void* values,
+template <class T>
+const char* complaint(std::int64_t parcels, const parcels::Store& store, T* const* values,
                       std::uint32_t count, std::uint32_t most, const double* field) {
-  if (values == nullptr || field == nullptr) return "a mesh function was given a null pointer";
+  if (omp_in_parallel())
+    return "mesh functions run loops of their own: they cannot be called inside a parallel loop";
+  if (field == nullptr || (values == nullptr && count > 0))
+    return "a mesh function was given a null pointer";
   if (count > most) return "more values than a record of the mesh has room for";
+  bool aligned = is_aligned(field);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (values[i] == nullptr) return "a mesh function was given a null pointer";
+    aligned = aligned && is_aligned(values[i]);
+  }
+  if (!aligned)
+    return "mesh functions need arrays that begin at a multiple of 64 bytes, as scratch memory and "
+           "the views of all parcels do";
   if (parcels != static_cast<std::int64_t>(store.size()))
     return "mesh functions need arrays over all parcels: only an operator of global scope without "
            "activity conditions has them";
