@@ -1,6 +1,7 @@
 #include "dynamics/parcel_motion.hpp"
 
 #include "base/parallel.hpp"
+#include "parcels/margin.hpp"
 
 namespace pileus::dynamics {
 namespace {
@@ -37,7 +38,7 @@ template <int D>
 void ParcelMotion<D>::reserve(std::size_t parcels) {
   // Room for growth, so that the parcel count may vary for many steps without an allocation. Each
   // array is looked at: sorting swaps some of them for others.
-  const std::size_t room = parcels + parcels / 32 + read_ahead;
+  const std::size_t room = parcels::with_margin(parcels) + read_ahead;
   const auto provide = [&](AlignedArray<double>& array) {
     if (array.size() < parcels + read_ahead) array.discard_and_resize(room);
   };

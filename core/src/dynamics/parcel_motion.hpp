@@ -2,6 +2,7 @@
 // flow comes from.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "base/aligned_array.hpp"
@@ -74,6 +75,8 @@ class ParcelMotion {
   parcels::Deposit<D>& deposit() { return deposit_; }
   /// Room for support offsets between two steps: it is the memory of the stages' increments.
   parcels::SupportOffsets<D>& offsets() { return offsets_; }
+  /// Memory on the mesh, on a cache line, that is nobody's between two steps; may be none.
+  virtual std::span<double> room_on_mesh() { return {}; }
   virtual std::size_t allocated_bytes() const;
 
  protected:

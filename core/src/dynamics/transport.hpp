@@ -35,6 +35,8 @@ class Transport final : public ParcelMotion<D> {
   void probe(parcels::Store& store, PhaseTimes& times) override;
 
   const double* deposited() override { return deposited_.data(); }
+  /// The flow's, which the next evaluate() finds anew.
+  std::span<double> room_on_mesh() override { return {flow_.data(), flow_.size()}; }
   std::size_t allocated_bytes() const override;
 
  private:

@@ -56,9 +56,7 @@ VolumePotential<D>::VolumePotential(const Grid<D>& grid, HorizontalMean mean)
       x_in_(grid.nx(), block_ / 2),
       x_out_(grid.nx(), D * block_ / 2),
       y_in_(grid.ny(), levels_ / 2),
-      y_out_(grid.ny(), D * levels_ / 2),
-      phi_(grid.columns() * std::size_t(levels_)),
-      gradient_(grid.columns() * std::size_t(D * levels_)) {
+      y_out_(grid.ny(), D * levels_ / 2) {
   const int nz = grid.nz();
   const auto end = [nz](int k) { return k == 0 || k == nz ? 0.5 : 1.0; };
   cosine_analysis_ = ColumnMatrix(
@@ -75,13 +73,16 @@ VolumePotential<D>::VolumePotential(const Grid<D>& grid, HorizontalMean mean)
 }
 
 template <int D>
-std::size_t VolumePotential<D>::allocated_bytes() const {
-  return phi_.allocated_bytes() + gradient_.allocated_bytes() + scratch_.allocated_bytes();
+std::size_t VolumePotential<D>::room_needed() const {
+  return aligned_doubles(grid_.columns() * std::size_t(levels_)) +
+         grid_.columns() * std::size_t(D * levels_);
 }
 
 template <int D>
-void VolumePotential<D>::solve(const double* phi, double* gradient) {
+void VolumePotential<D>::solve(const double* phi, double* gradient, double* room) {
   scratch_.reserve();
+  phi_ = room;
+  gradient_ = room + aligned_doubles(grid_.columns() * std::size_t(levels_));
   const std::size_t pieces = std::size_t(grid_.ny()) * std::size_t(blocks_);
   parallel_tasks(pieces, [&](std::size_t task) { transform_row(phi, task); });
   parallel_tasks(std::size_t(grid_.nx() / 2 + 1), [&](std::size_t i) { solve_strip(int(i)); });
@@ -108,7 +109,7 @@ void VolumePotential<D>::transform_row(const double* phi, std::size_t task) {
   x_in_.forward(row, spectrum);
   for (int i = 0; i < grid_.nx(); ++i)
     std::copy_n(spectrum + i * block_, block_,
-                phi_.data() + grid_.column(i, piece.j) * std::size_t(levels_) + piece.first);
+                phi_ + grid_.column(i, piece.j) * std::size_t(levels_) + piece.first);
 }
 
 template <int D>
@@ -124,7 +125,7 @@ void VolumePotential<D>::solve_strip(int i) {
   const int ny = grid_.ny(), partner = conjugate(i, grid_.nx());
   const auto read = [&](int column, double* to) {
     for (int j = 0; j < ny; ++j)
-      std::copy_n(phi_.data() + grid_.column(column, j) * stride, stride,
+      std::copy_n(phi_ + grid_.column(column, j) * stride, stride,
                   gather + std::size_t(j) * stride);
     y_in_.forward(gather, to);
   };
@@ -145,7 +146,7 @@ void VolumePotential<D>::solve_strip(int i) {
     y_out_.backward(from, line);
     for (int j = 0; j < ny; ++j)
       std::copy_n(line + std::size_t(j) * D * stride, D * stride,
-                  gradient_.data() + grid_.column(column, j) * D * stride);
+                  gradient_ + grid_.column(column, j) * D * stride);
   };
   write(i, out);
   if (partner != i) write(partner, out_conjugate);
@@ -210,7 +211,7 @@ void VolumePotential<D>::finish_row(std::size_t task, double* gradient) {
   double* row = spectrum + aligned_doubles(x_out_.doubles());
   for (int i = 0; i < grid_.nx(); ++i)
     for (int axis = 0; axis < D; ++axis)
-      std::copy_n(gradient_.data() +
+      std::copy_n(gradient_ +
                       (grid_.column(i, piece.j) * D + std::size_t(axis)) * std::size_t(levels_) +
                       piece.first,
                   block_, spectrum + (i * D + axis) * block_);

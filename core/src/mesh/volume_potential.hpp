@@ -26,9 +26,11 @@ class VolumePotential {
   /// `phi`: V/V_cell − 1 per node, levels 0 … n_z read; its domain mean has no effect.
   /// `gradient`: ∇χ (m², a displacement per unit of φ's relaxation) as [node*width + axis] at all
   /// levels; beyond the walls the horizontal components are even and the vertical one is odd.
-  void solve(const double* phi, double* gradient);
+  /// `room`: doubles to work in, room_needed() of them on a cache line.
+  void solve(const double* phi, double* gradient, double* room);
+  std::size_t room_needed() const;
 
-  std::size_t allocated_bytes() const;
+  std::size_t allocated_bytes() const { return scratch_.allocated_bytes(); }
 
  private:
   struct Piece;
@@ -45,8 +47,8 @@ class VolumePotential {
   ColumnMatrix cosine_analysis_, cosine_synthesis_, sine_synthesis_;
   AlignedArray<double> wavenumber_;
   LineTransform x_in_, x_out_, y_in_, y_out_;
-  AlignedArray<double> phi_;       // [j][i][levels], transformed along x
-  AlignedArray<double> gradient_;  // [j][i][axis][levels]
+  double* phi_ = nullptr;       // in the room: [j][i][levels], transformed along x
+  double* gradient_ = nullptr;  // in the room: [j][i][axis][levels]
   ThreadScratch scratch_;
 };
 

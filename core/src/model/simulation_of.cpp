@@ -191,7 +191,8 @@ void SimulationOf<D>::place_parcels(const scene::Scene& scene) {
   order();
   if (control.jitter == 0) return;
   for (int round = 0; round < settling_rounds; ++round)
-    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit());
+    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit(),
+                    transport_->room_on_mesh());
   order();
 }
 
@@ -323,7 +324,8 @@ StepReport SimulationOf<D>::finish_step() {
   {
     const PhaseScope scope(times_, Phase::correction);
     transport_->offsets().update(*store_);
-    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit());
+    correction_.run(*store_, transport_->offsets(), tile_begin_, transport_->deposit(),
+                    transport_->room_on_mesh());
   }
   time_ = until_;
   ++step_;

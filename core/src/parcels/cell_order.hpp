@@ -16,7 +16,8 @@ class CellOrder {
 
   /// Sorts the parcels' indices by cell of their centre; stable, so the result depends on the
   /// previous order and the positions alone.
-  void sort(const Store& store);
+  /// `keys` is room for the time of the call.
+  void sort(const Store& store, std::vector<std::uint32_t>& keys);
 
   /// Parcel indices in cell order.
   const std::vector<std::uint32_t>& order() const { return order_; }
@@ -30,13 +31,13 @@ class CellOrder {
     return std::size_t(rank) * std::size_t(grid_.nz());
   }
   std::size_t allocated_bytes() const {
-    return (order_.capacity() + key_.capacity() + first_.capacity()) * sizeof(std::uint32_t);
+    return (order_.capacity() + first_.capacity()) * sizeof(std::uint32_t);
   }
 
  private:
   mesh::Grid<D> grid_;
   std::vector<std::uint32_t> rank_;  // column → rank
-  std::vector<std::uint32_t> key_, order_, first_;
+  std::vector<std::uint32_t> order_, first_;
 };
 
 /// Index of the cell (or node) below a coordinate in a periodic direction of n cells; any distance

@@ -30,23 +30,19 @@ void run_kernel(const CompressJob<2>& job) {
 
 template <int D>
 VolumeCorrection<D>::VolumeCorrection(const mesh::Grid<D>& grid, const CorrectionControl& control)
-    : grid_(grid),
-      control_(control),
-      potential_(grid),
-      excess_(grid.nodes()),
-      gradient_(grid.nodes() * gradient_width(D)) {}
+    : grid_(grid), control_(control), potential_(grid) {}
 
 template <int D>
 void VolumeCorrection<D>::deposit_excess(const Store& store, const SupportOffsets<D>& offsets,
                                          const std::vector<std::size_t>& tile_begin,
                                          Deposit<D>& deposit) {
-  deposit.volume(store, offsets, tile_begin, excess_.data());
+  deposit.volume(store, offsets, tile_begin, excess_);
   const double inverse = 1.0 / grid_.cell_volume();
   parallel_chunks(
       grid_.columns(),
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
-          double* column = excess_.data() + grid_.node(c, 0);
+          double* column = excess_ + grid_.node(c, 0);
           const int nz = grid_.nz();
           for (int k = 0; k <= nz; ++k) column[k] = column[k] * inverse - 1.0;
           // Beyond a wall, where a centre exactly on it may look: no difference across the wall.
@@ -63,7 +59,7 @@ void VolumeCorrection<D>::displace(Store& store) const {
     DisplaceJob<D> job{};
     job.grid = make_kernel_grid(grid_);
     for (int d = 0; d < D; ++d) job.position[d] = store.position(d);
-    job.gradient = gradient_.data();
+    job.gradient = gradient_;
     job.begin = begin;
     job.end = end;
     run_kernel(job);
@@ -80,7 +76,7 @@ void VolumeCorrection<D>::compress(Store& store) const {
       job.position[d] = store.position(d);
       job.spacing[d] = grid_.spacing[static_cast<std::size_t>(d)];
     }
-    job.excess = excess_.data();
+    job.excess = excess_;
     job.prefactor = control_.gradient_prefactor;
     job.limit = control_.max_compression;
     job.begin = begin;
@@ -92,31 +88,22 @@ void VolumeCorrection<D>::compress(Store& store) const {
 
 template <int D>
 void VolumeCorrection<D>::run(Store& store, const SupportOffsets<D>& offsets,
-                              const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit) {
+                              const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit,
+                              std::span<double> lent) {
+  if (control_.iterations == 0) return;
+  const std::size_t nodes = mesh::aligned_doubles(grid_.nodes());
+  const std::size_t gradient = nodes * gradient_width(D);
+  const std::size_t needed = nodes + gradient + potential_.room_needed();
+  if (lent.size() < needed && own_.size() < needed) own_.discard_and_resize(needed);
+  excess_ = lent.size() < needed ? own_.data() : lent.data();
+  gradient_ = excess_ + nodes;
   for (int i = 0; i < control_.iterations; ++i) {
     deposit_excess(store, offsets, tile_begin, deposit);
-    potential_.solve(excess_.data(), gradient_.data());
+    potential_.solve(excess_, gradient_, gradient_ + gradient);
     displace(store);
     deposit_excess(store, offsets, tile_begin, deposit);
     compress(store);
   }
-}
-
-template <int D>
-VolumeError VolumeCorrection<D>::measure(const Store& store, const SupportOffsets<D>& offsets,
-                                         const std::vector<std::size_t>& tile_begin,
-                                         Deposit<D>& deposit) {
-  deposit_excess(store, offsets, tile_begin, deposit);
-  VolumeError error;
-  double sum = 0;
-  for (std::size_t c = 0; c < grid_.columns(); ++c)
-    for (int k = 0; k <= grid_.nz(); ++k) {
-      const double e = excess_[grid_.node(c, k)];
-      sum += e * e;
-      error.largest = std::max(error.largest, std::abs(e));
-    }
-  error.rms = std::sqrt(sum / static_cast<double>(grid_.columns() * std::size_t(grid_.nz() + 1)));
-  return error;
 }
 
 template class VolumeCorrection<2>;

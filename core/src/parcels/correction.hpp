@@ -1,6 +1,7 @@
 // Keeping parcel volume uniform: centres move until the volume gridded from the parcels fills every
 // cell.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "base/aligned_array.hpp"
@@ -29,15 +30,14 @@ class VolumeCorrection {
   /// Repeats, `iterations` times: displacement by the gradient of the potential of the volume
   /// excess (Laplace correction), then displacement down the excess inside each cell (gradient
   /// correction, monotone and confined to the cell). Attributes and shapes do not change, so the
-  /// offsets stay valid. Frey, Dritschel and Böing 2023, section 3.
+  /// offsets stay valid. Frey, Dritschel and Böing 2023, section 3. `lent` is memory to work in, on
+  /// a cache line; where it does not suffice, memory of its own is taken.
   void run(Store& store, const SupportOffsets<D>& offsets,
-           const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit);
+           const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit,
+           std::span<double> lent = {});
 
-  /// Error of the present positions.
-  VolumeError measure(const Store& store, const SupportOffsets<D>& offsets,
-                      const std::vector<std::size_t>& tile_begin, Deposit<D>& deposit);
   std::size_t allocated_bytes() const {
-    return potential_.allocated_bytes() + excess_.allocated_bytes() + gradient_.allocated_bytes();
+    return potential_.allocated_bytes() + own_.allocated_bytes();
   }
 
  private:
@@ -49,8 +49,9 @@ class VolumeCorrection {
   mesh::Grid<D> grid_;
   CorrectionControl control_;
   mesh::VolumePotential<D> potential_;
-  AlignedArray<double> excess_;    // nodes
-  AlignedArray<double> gradient_;  // nodes × (3D: 4, 2D: 2)
+  AlignedArray<double> own_;    // memory, where none is lent
+  double* excess_ = nullptr;    // nodes
+  double* gradient_ = nullptr;  // nodes × (3D: 4, 2D: 2)
 };
 
 }  // namespace pileus::parcels

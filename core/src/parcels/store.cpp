@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.hpp"
+#include "parcels/margin.hpp"
 
 namespace pileus::parcels {
 namespace {
@@ -25,10 +26,9 @@ Store::Store(int dimension, std::vector<Scalar> scalars)
   resize(0);
 }
 
-/// Room with a margin, so that a slowly growing population seldom allocates.
 void Store::reserve(std::size_t parcels) {
   if (parcels <= capacity_ && capacity_ > 0) return;
-  capacity_ = capacity_ == 0 ? parcels + parcels / 32 : parcels + parcels / 8;
+  capacity_ = with_margin(parcels);
   for (auto& column : columns_) column.resize(capacity_ + read_ahead);
   uid_.resize(capacity_ + read_ahead);
 }
@@ -60,10 +60,14 @@ std::string Store::column_name(int index) const {
 void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double>& spare) {
   constexpr std::size_t chunk = 16384;  // pure copying: fewer, longer tasks
   const std::size_t count = source.size();
-  reserve(count);
-  if (spare.size() < capacity_ + read_ahead) spare.discard_and_resize(capacity_ + read_ahead);
+  // A column that has to grow does so on its way through the spare, not by a copy of its own.
+  if (count > capacity_) capacity_ = with_margin(count);
+  const auto provide = [&](auto& array) {
+    if (array.size() < capacity_ + read_ahead) array.discard_and_resize(capacity_ + read_ahead);
+  };
   for (int c = 0; c < state_columns_; ++c) {
     auto& column = columns_[static_cast<std::size_t>(c)];
+    provide(spare);
     const double* from = column.data();
     double* to = spare.data();
     parallel_chunks(
@@ -74,9 +78,12 @@ void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double
         chunk);
     column.swap(spare);
   }
+  for (auto c = static_cast<std::size_t>(state_columns_); c < columns_.size(); ++c)
+    provide(columns_[c]);
   // Identities pass through the spare as bytes: it has the room, and no memory of their own is
   // kept.
   static_assert(sizeof(std::uint64_t) == sizeof(double));
+  provide(spare);
   parallel_chunks(
       count,
       [&](std::size_t begin, std::size_t end) {
@@ -84,6 +91,7 @@ void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double
           std::memcpy(spare.data() + p, uid_.data() + source[p], sizeof(std::uint64_t));
       },
       chunk);
+  provide(uid_);
   parallel_chunks(
       count,
       [&](std::size_t begin, std::size_t end) {

@@ -25,7 +25,7 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
   UpkeepCounts counts;
   {
     const PhaseScope scope(times, Phase::sort);
-    order_.sort(store);
+    order_.sort(store, source_);
   }
   {
     const PhaseScope scope(times, Phase::merge);
@@ -57,7 +57,7 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
 template <int D>
 void Upkeep<D>::reorder(Store& store, SupportOffsets<D>& offsets, PhaseTimes& times) {
   const PhaseScope scope(times, Phase::sort);
-  order_.sort(store);
+  order_.sort(store, source_);
   splits_.assign(store.size(), 0);
   merge_.forget();
   list_survivors();
@@ -115,8 +115,11 @@ template <int D>
 void Upkeep<D>::list_survivors() {
   const auto& gone = merge_.gone();
   const bool any_gone = !gone.empty();
+  std::size_t survivors = 0;
+  for (std::size_t p = 0; p < splits_.size(); ++p)
+    survivors += any_gone && gone[p] ? 0 : 1 + std::size_t(splits_[p] != 0);
   source_.clear();
-  source_.reserve(splits_.size() + splits_.size() / 8);
+  if (survivors > source_.capacity()) source_.reserve(with_margin(survivors));
   pairs_.clear();
   const auto& tiles = tiling_.tiles();
   for (std::size_t t = 0; t < tiles.size(); ++t) {

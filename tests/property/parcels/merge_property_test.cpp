@@ -34,7 +34,8 @@ MergeCounts merge(Store& store, const mesh::Grid<D>& grid, double smallest,
                   std::vector<std::size_t>& left) {
   const Tiling<D> tiling(grid);
   CellOrder<D> order(grid, tiling);
-  order.sort(store);
+  std::vector<std::uint32_t> keys;
+  order.sort(store, keys);
   Merge<D> merging(grid, smallest);
   const MergeCounts counts = merging.run(store, order);
   left.clear();

@@ -53,7 +53,8 @@ template <int D>
 void expect_agreement(const mesh::Grid<D>& grid, const Store& store) {
   const Tiling<D> tiling(grid);
   CellOrder<D> order(grid, tiling);
-  order.sort(store);
+  std::vector<std::uint32_t> keys;
+  order.sort(store, keys);
   NearestParcel<D> nearest(grid);
   nearest.prepare(store, order);
   for (std::uint32_t p = 0; p < store.size(); ++p)
@@ -128,7 +129,8 @@ TEST(MergeStorm, IsOverInOneCall) {
     }
     const Tiling<3> tiling(grid);
     CellOrder<3> order(grid, tiling);
-    order.sort(store);
+    std::vector<std::uint32_t> keys;
+    order.sort(store, keys);
     Merge<3> merge(grid, 0.05);
     const MergeCounts counts = merge.run(store, order);
     EXPECT_EQ(counts.small, count);

@@ -55,7 +55,8 @@ TEST(VolumePotential, NeumannModeIsExact) {
     return std::cos(k * x[0]) * std::sin(l * x[1]) * std::cos(m * x[2]);
   });
   AlignedArray<double> gradient(4 * grid.nodes());
-  potential.solve(phi.data(), gradient.data());
+  AlignedArray<double> potential_room(potential.room_needed());
+  potential.solve(phi.data(), gradient.data(), potential_room.data());
   const double inverse = -1 / (k * k + l * l + m * m);
   EXPECT_LT(largest_error(grid, gradient, 4, -1, 13,
                           [&](const Point<3>& x) {
@@ -75,14 +76,16 @@ TEST(VolumePotential, HorizontalMeanIsSolvedOrRemoved) {
   const auto phi = sampled(grid, [&](const Point<2>& x) { return 0.1 + std::cos(m * x[1]); });
   AlignedArray<double> gradient(2 * grid.nodes());
   VolumePotential<2> all(grid);
-  all.solve(phi.data(), gradient.data());
+  AlignedArray<double> all_room(all.room_needed());
+  all.solve(phi.data(), gradient.data(), all_room.data());
   EXPECT_LT(largest_error(grid, gradient, 2, -1, 21,
                           [&](const Point<2>& x) {
                             return std::array{0.0, std::sin(m * x[1]) / m};
                           }),
             1e-15);
   VolumePotential<2> part(grid, VolumePotential<2>::HorizontalMean::remove);
-  part.solve(phi.data(), gradient.data());
+  AlignedArray<double> part_room(part.room_needed());
+  part.solve(phi.data(), gradient.data(), part_room.data());
   EXPECT_LT(largest_error(grid, gradient, 2, -1, 21,
                           [](const Point<2>&) {
                             return std::array{0.0, 0.0};
@@ -99,7 +102,8 @@ TEST(VolumePotential, DivergenceGivesBackWhatIsResolved) {
     VolumePotential<2> potential(grid);
     const auto phi = sampled(grid, [](const Point<2>& x) { return x[1] * x[1] - 1.0 / 3; });
     AlignedArray<double> gradient(2 * grid.nodes());
-    potential.solve(phi.data(), gradient.data());
+    AlignedArray<double> potential_room(potential.room_needed());
+    potential.solve(phi.data(), gradient.data(), potential_room.data());
     error[n] = largest_error(grid, gradient, 2, 0, grid.nz(), [](const Point<2>& x) {
       return std::array{0.0, (x[1] * x[1] * x[1] - x[1]) / 3};
     });
@@ -114,7 +118,8 @@ TEST(VolumePotential, WorksOnOddAndDegenerateGrids) {
     const double m = pi / 3;
     const auto phi = sampled(grid, [&](const Point<3>& x) { return std::cos(m * x[2]); });
     AlignedArray<double> gradient(4 * grid.nodes());
-    potential.solve(phi.data(), gradient.data());
+    AlignedArray<double> potential_room(potential.room_needed());
+    potential.solve(phi.data(), gradient.data(), potential_room.data());
     EXPECT_LT(largest_error(grid, gradient, 4, 0, cells[2],
                             [&](const Point<3>& x) {
                               return std::array{0.0, 0.0, std::sin(m * x[2]) / m, 0.0};

@@ -84,7 +84,8 @@ void expect_order(const mesh::Grid<D>& grid, std::size_t count) {
   const Tiling<D> tiling(grid);
   CellOrder<D> order(grid, tiling);
   for (int round = 0; round < 2; ++round) {
-    order.sort(store);
+    std::vector<std::uint32_t> keys;
+    order.sort(store, keys);
     ASSERT_EQ(order.order().size(), count);
     std::vector<bool> seen(count);
     std::uint32_t start = 0;

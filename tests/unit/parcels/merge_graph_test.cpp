@@ -133,7 +133,8 @@ TEST(MergeGraph, MergedParcelsDoNotDependOnTheOrderInMemory) {
         store.uid()[p] = 1000 + 7 * spot;
       }
       CellOrder<2> order(grid, tiling);
-      order.sort(store);
+      std::vector<std::uint32_t> keys;
+      order.sort(store, keys);
       Merge<2> merge(grid, pi * pi / 10);
       merge.run(store, order);
       std::set<Group> groups;

@@ -55,7 +55,8 @@ template <int D>
 Outcome merge_once(Store& store, const mesh::Grid<D>& grid, double smallest) {
   const Tiling<D> tiling(grid);
   CellOrder<D> order(grid, tiling);
-  order.sort(store);
+  std::vector<std::uint32_t> keys;
+  order.sort(store, keys);
   Merge<D> merge(grid, smallest);
   Outcome outcome{merge.run(store, order), {}};
   for (std::size_t p = 0; p < store.size(); ++p)
