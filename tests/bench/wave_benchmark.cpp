@@ -146,7 +146,8 @@ Row measure(const Options& options, const Case& which, int cells) {
   overrides.push_back(fmt::format("domain.cells=[{}, {}, {}]", cells, cells, cells / 4));
   bench::PreparedScene prepared(options.scene, overrides);
   model::Simulation& simulation = prepared.simulation();
-  model::Diagnostics diagnostics(prepared.scene(), simulation, prepared.sequence().surface(), {});
+  model::Diagnostics diagnostics(prepared.scene(), simulation, prepared.sequence().surface(), {},
+                                 {});
   const double end = prepared.scene().time.end;
 
   Row row{.name = which.name, .cells = cells};
