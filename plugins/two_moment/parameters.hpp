@@ -12,12 +12,15 @@ namespace pileus::two_moment {
 enum class Collection { none, khairoutdinov_kogan, seifert_beheng };
 
 inline constexpr const char* with_rain = "collection != none";
+inline constexpr const char* condensing = "effect.condensation == on";
+inline constexpr const char* collecting = "collection != none and effect.collection == on";
 inline constexpr const char* with_twomey = "activation == twomey";
 inline constexpr const char* with_modes = "activation != twomey";
 inline constexpr const char* with_profile = "temperature == reference_profile";
 inline constexpr const char* with_carried_aerosol = "aerosol == carried";
 inline constexpr const char* with_derived_buoyancy = "buoyancy == derived";
-inline constexpr const char* with_peak = "largest_supersaturation == kept";
+inline constexpr const char* with_peak =
+    "largest_supersaturation == kept and effect.condensation == on";
 
 struct Parameters {
   AirParameters air;

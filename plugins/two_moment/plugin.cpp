@@ -46,11 +46,12 @@ class TwoMoment : public Operator<TwoMoment> {
     const double* z = block.in(height_);
     const double* theta = block.in(theta_);
     const double* vapour = block.in(vapour_);
-    const double* cloud = block.in(cloud_);
-    const double* rain = collection_ != Collection::none ? block.in(rain_) : nullptr;
-    const double* previous = block.in(previous_height_);
+    const auto if_there = [&](Slot s) { return block.has(s) ? block.in(s) : nullptr; };
+    const double* cloud = if_there(cloud_);
+    const double* rain = if_there(rain_);
+    const double* previous = if_there(previous_height_);
     double* kelvin = block.out(temperature_);
-    double* humidity = block.out(relative_humidity_);
+    double* humidity = block.has(relative_humidity_) ? block.out(relative_humidity_) : nullptr;
     double* b = derives_buoyancy_ ? block.out(buoyancy_) : nullptr;
     block.each([&](auto p) {
       const thermo::ReferenceState::Point at = reference_->at(z[p]);
@@ -58,17 +59,20 @@ class TwoMoment : public Operator<TwoMoment> {
           air_.prescribed_temperature ? at.exner * profile_theta(z[p]) : at.exner * theta[p];
       if (!(t >= coldest_air)) refuse_cold(block.uid(p), z[p], t);
       kelvin[p] = t;
-      const bool moist = vapour[p] != 0 || cloud[p] > 0;
-      const double pressure = moist ? thermo::pressure_of_exner(at.exner, kappa_) : 0.0;
-      humidity[p] = vapour[p] == 0 ? 0.0 : air_.relative_humidity(vapour[p], t, pressure);
+      const bool cloudy = cloud != nullptr && cloud[p] > 0;
+      const bool needs_pressure = cloudy || (humidity != nullptr && vapour[p] != 0);
+      const double pressure = needs_pressure ? thermo::pressure_of_exner(at.exner, kappa_) : 0.0;
+      if (humidity != nullptr)
+        humidity[p] = vapour[p] == 0 ? 0.0 : air_.relative_humidity(vapour[p], t, pressure);
       if (b == nullptr) return;
       double condensed = 0;
-      if (cloud[p] > 0 && z[p] != previous[p]) {
+      if (cloudy && z[p] != previous[p]) {
         condensed =
             std::clamp(condensed_on_the_way(z[p] - previous[p], theta[p], {t, pressure}, at),
                        -cloud[p], vapour[p]);
       }
-      const double liquid = (rain == nullptr ? cloud[p] : cloud[p] + rain[p]) + condensed;
+      const double liquid =
+          (cloud != nullptr ? cloud[p] : 0.0) + (rain != nullptr ? rain[p] : 0.0) + condensed;
       b[p] = buoyancy_scale_ *
              (thermo::virtual_potential_temperature((t + air_.warming() * condensed) / at.exner,
                                                     vapour[p] - condensed, liquid) -
@@ -76,7 +80,10 @@ class TwoMoment : public Operator<TwoMoment> {
     });
   }
 
+  /// Without condensation there is nothing to advance; with it, rain only where there is
+  /// collection.
   void apply(const pileus_step& step, Block block) const {
+    if (!block.has(cloud_)) return;
     Columns c = columns(block);
     std::uint64_t repairs = 0;
     double created = 0;
@@ -169,7 +176,7 @@ class TwoMoment : public Operator<TwoMoment> {
     const Level to = level(c.height[p]);
     const Level from = c.previous[p] == c.height[p] ? to : level(c.previous[p]);
     Actions did = condensation_->advance(water, from, to, dt);
-    if (collection_ != Collection::none) {
+    if (c.rain != nullptr) {
       const double density = air_.density(air_.temperature(water.theta, to), to.pressure);
       if (collection_ == Collection::khairoutdinov_kogan) {
         collect(KhairoutdinovKogan{}, water, density, dt, did);
@@ -234,6 +241,7 @@ class TwoMoment : public Operator<TwoMoment> {
     volume_ = d.reads("parcel_volume", "m3").doc("weights the ledger's numbers");
     previous_height_ = d.updates("previous_height", "m")
                            .intensive()
+                           .when(condensing)
                            .doc("where the parcel was when its supersaturation was last advanced");
     theta_ = d.updates("air_potential_temperature", "K").intensive().range(50.0, 2000.0);
     vapour_ = d.updates("specific_humidity", "1").intensive("water").range(0.0, 1.0);
@@ -249,18 +257,20 @@ class TwoMoment : public Operator<TwoMoment> {
     d.budget("water");
     cloud_ = d.owns("mass_fraction_of_cloud_liquid_water_in_air", "1")
                  .intensive("water")
-                 .range(0.0, 1.0);
+                 .range(0.0, 1.0)
+                 .when(condensing);
     droplets_ = d.owns("number_of_cloud_droplets_per_mass_of_air", "kg-1")
                     .intensive("droplets_and_aerosol")
-                    .range(0.0, 1e16);
+                    .range(0.0, 1e16)
+                    .when(condensing);
     rain_ = d.owns("mass_fraction_of_rain_in_air", "1")
                 .intensive("water")
                 .range(0.0, 1.0)
-                .when(with_rain);
+                .when(collecting);
     raindrops_ = d.owns("number_of_raindrops_per_mass_of_air", "kg-1")
                      .intensive()
                      .range(0.0, 1e16)
-                     .when(with_rain);
+                     .when(collecting);
     peak_ = d.owns("largest_supersaturation", "1")
                 .intensive()
                 .range(0.0, 1e300)
@@ -269,6 +279,7 @@ class TwoMoment : public Operator<TwoMoment> {
     temperature_ = d.derives("air_temperature", "K").range(coldest_air, 1e4);
     relative_humidity_ = d.derives("relative_humidity", "1")
                              .range(0.0, std::numeric_limits<double>::max())
+                             .when(condensing)
                              .doc("over liquid water; above 1 droplets are activated");
     buoyancy_ = d.derives("buoyancy", "m s-2")
                     .range(-1e6, 1e6)

@@ -2,24 +2,55 @@
 import json
 import subprocess
 
+import netCDF4
+import numpy
+
 from program import CONFIGS, NUMERICAL, PROGRAM, USAGE, ProgramTest, environment
+from records import variables
 
 BUBBLE = CONFIGS / "unsaturated_bubble" / "unsaturated_bubble_small.yaml"
 # The bubble made so moist that its top saturates on the way, after some three minutes.
 MOIST = {"constants.q_bubble": 0.0195, "time.end": "300 s", "output.fields.every": "300 s",
          "output.profiles.every": "300 s", "output.parcels.every": "300 s",
          "output.series.every": "50 s"}
-LONGEST = 8  # steps compared where a scene's verdicts are all on: nothing to compare but the plan
+STEPS = 4  # compared where a scene's verdicts are all on, and in variants of a scene
+LARGEST = 12000  # parcels; larger scenes are compared on a coarser mesh
+COARSE = {2: "[32, 24]", 3: "[12, 12, 10]"}
+
+# Humid air that rises in a box too low for it to saturate, with clouds and rain carried apart.
+DROPS = """\
+scene: {name: drops, title: Humid bubble in the plane that forms no drop}
+domain: {extent: [1 km, 1 km], cells: [20, 20]}
+time: {end: 200 s}
+formulas: {shape: 'exp(-((x - 500)^2 + (z - 260)^2)/150^2)'}
+initial:
+  air_potential_temperature: 300 + 0.5*shape
+  specific_humidity: 0.006 + 0.002*shape
+operators:
+  - {use: org.pileus.two_moment, name: clouds, collection: seifert_beheng,
+     saturation_pressure: murphy_koop}
+  - {use: org.pileus.rain_sedimentation, name: fall}
+output: {fields: {every: 50 s}, parcels: {every: 100 s}}
+"""
+# The same air so moist that it saturates on the way.
+MOIST_DROPS = {"initial.specific_humidity": "0.0130 + 0.0045*shape", "time.end": "300 s"}
+RAIN = ("mass_fraction_of_rain_in_air", "number_of_raindrops_per_mass_of_air")
+DROPLETS = ("mass_fraction_of_cloud_liquid_water_in_air",
+            "number_of_cloud_droplets_per_mass_of_air")
 
 
-def small_variants():
-    """The quick scene of every folder, as `pileus check` chooses it."""
-    for folder in sorted(CONFIGS.iterdir()):
-        for ending in ("_small.yaml", ".yaml"):
-            scene = folder / (folder.name + ending)
-            if scene.is_file():
-                yield scene
-                break
+def is_quick_variant(scene):
+    """Whether it is the one of its folder that `pileus check` takes; it is run to its end."""
+    small = scene.parent / f"{scene.parent.name}_small.yaml"
+    return scene == (small if small.is_file() else scene.parent / f"{scene.parent.name}.yaml")
+
+
+def size_of(plan):
+    """Overrides that make a scene small enough for a test."""
+    if plan["data_flow"]["parcels"] <= LARGEST:
+        return {}
+    names = [one["name"] for one in plan["data_flow"]["stored"]]
+    return {"domain.cells": COARSE[3 if "y_position" in names else 2]}
 
 
 def plan_of(scene, *options):
@@ -36,21 +67,82 @@ class EffectsProgramTest(ProgramTest):
         return self.write("forced_" + scene.name, f"extends: {scene}\neffects:\n{effects}")
 
     def test_automatic_plans_give_the_bits_of_everything_on(self):
+        scenes = [scene for scene in CONFIGS.rglob("*.yaml") if scene.parent.name < "moist"]
+        self.assertGreater(self.compare_plans(scenes), 5)
+
+    def test_automatic_plans_give_the_bits_of_everything_on_in_moist_scenes(self):
+        scenes = [scene for scene in CONFIGS.rglob("*.yaml") if scene.parent.name >= "moist"]
+        self.assertGreater(self.compare_plans(scenes), 10)
+
+    def test_automatic_plans_give_the_bits_of_everything_on_in_hard_cases(self):
+        self.assertGreater(self.compare_plans((CONFIGS.parent / "hard").glob("*.yaml")), 3)
+
+    def compare_plans(self, scenes):
+        """Runs all scenes that have operators as planned and with all effects on."""
         compared = 0
-        for scene in small_variants():
+        for scene in sorted(scenes):
             plan = plan_of(scene)
             if not plan["operators"]:
                 continue  # nothing that could be left out
             with self.subTest(scene=scene.stem):
                 left_out = [name for name, effect in plan["effects"].items()
                             if effect["provided_by"] and effect["verdict"] != "on"]
-                values = {} if left_out else {"time.max_steps": LONGEST}
+                whole = left_out and is_quick_variant(scene)
+                values = {} if whole else size_of(plan) | {"time.max_steps": STEPS}
                 planned = self.run_well(scene, out="auto_" + scene.stem, values=values)
                 forced = self.run_well(self.forced_on(scene, plan), out="on_" + scene.stem,
                                        values=values)
                 self.assertEqual(planned.summary["state_sha256"], forced.summary["state_sha256"])
                 compared += 1
-        self.assertGreater(compared, 0)
+        return compared
+
+    def test_clouds_that_cannot_form_have_no_arrays_and_the_air_has_the_same_bits(self):
+        scene = self.write("drops.yaml", DROPS)
+        plan = plan_of(scene)
+        off = self.run_well(scene, "off")
+        on = self.run_well(self.forced_on(scene, plan), "on")
+        for name in ("condensation", "activation", "collection", "rain_evaporation",
+                     "sedimentation"):
+            self.assertEqual(off.summary["effects"][name]["verdict"], "off", name)
+        self.assertNotIn("fall", off.summary["operators"])
+        clouds = off.summary["operators"]["clouds"]
+        self.assertEqual(clouds["skipped"], 0)  # nobody asked whether parcels are active
+        self.assertGreater(on.summary["operators"]["clouds"]["skipped"], 0)
+        # Mass and number of drops and of rain, the previous height, relative humidity: 8 B each.
+        self.assertEqual(off.summary["left_out"]["bytes_per_parcel"], 6 * 8)
+        compared = 0
+        for file in ("fields.nc", "parcels.nc"):
+            with netCDF4.Dataset(off.out / file) as a, netCDF4.Dataset(on.out / file) as b:
+                left, right = variables(a), variables(b)
+                for name, variable in left.items():
+                    if name in ("scene", "plan"):  # texts, which tell them apart
+                        continue
+                    x, y = (numpy.asarray(v[...]) for v in (variable, right[name]))
+                    self.assertEqual(x.tobytes(), y.tobytes(), f"{file}: {name}")
+                    compared += 1
+                for name in set(right) - set(left):
+                    if name.split("/")[-1] in DROPLETS + RAIN:
+                        self.assertFalse(numpy.any(right[name][...]), name)
+        self.assertGreater(compared, 15)
+
+    def test_watched_clouds_switch_on_and_equal_the_run_that_had_them(self):
+        scene = self.write("drops.yaml", DROPS)
+        on = self.run_well(scene, "on", MOIST_DROPS | {"effects.condensation": "on"})
+        watched = self.run_well(scene, "watched", MOIST_DROPS | {"effects.condensation": "watch"})
+        reason = watched.summary["effects"]["condensation"]["reason"]
+        self.assertRegex(reason, r"switched on at t = [0-9.]+ s, step [1-9][0-9]")
+        self.assertEqual(watched.summary["state_sha256"], on.summary["state_sha256"])
+        self.assertGreater(on.diagnostic("max_liquid_water")["final"], 1e-5)
+
+    def test_rain_left_out_on_demand_has_no_arrays(self):
+        scene = self.write("drops.yaml", DROPS)
+        run = self.run_well(scene, values=MOIST_DROPS | {"effects.collection": "off"})
+        self.assertEqual(run.summary["effects"]["condensation"]["verdict"], "on")
+        stored = {one["name"] for one in
+                  json.loads((run.out / "plan.json").read_text())["data_flow"]["stored"]}
+        self.assertTrue(stored.issuperset(DROPLETS))
+        self.assertTrue(stored.isdisjoint(RAIN))
+        self.assertNotIn("fall", run.summary["operators"])
 
     def test_condensation_left_out_has_no_array_and_the_same_bits(self):
         values = {"time.end": "200 s"}

@@ -105,8 +105,8 @@ enum { PILEUS_PROVIDES = 1, PILEUS_REQUIRES, PILEUS_EXCLUDES };     /* role of a
 enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* comparison */
 /* clang-format on */
 
-/* `when`, wherever it stands: NULL (always), or comparisons of a choice, switch or integer
- * parameter with a literal, joined by " and ":  "thermodynamics == real",  "ice != false".
+/* `when`, wherever it stands: NULL (always), or comparisons of a choice, switch, integer or number
+ * with a literal (in SI units), joined by " and ":  "thermodynamics == real",  "rate != 0".
  * In the `when` of a quantity a term may also ask for an effect that the operator provides:
  * "effect.condensation == on". Where an effect is off, its quantities do not exist (their views
  * are NULL), and the operator leaves out the work for them; where it is watched, they begin to be

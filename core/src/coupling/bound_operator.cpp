@@ -101,7 +101,7 @@ void bind_conditions(BoundOperator& bound) {
     const double value = row.parameter != nullptr
                              ? bound.entry->values.numbers()[table.find_parameter(row.parameter)]
                              : row.value;
-    bound.conditions.push_back({column, row.clause, row.op, value});
+    bound.conditions.push_back({static_cast<std::size_t>(slot), column, row.clause, row.op, value});
   }
   // A comparison with an absent quantity is false, so its whole clause is.
   for (const pileus_condition& row : table.active_if) {
@@ -126,6 +126,17 @@ void bind_budgets(BoundOperator& bound) {
   }
 }
 
+/// Whether every clause compares a quantity that the plugin is not given: then none holds.
+bool is_idle(const BoundOperator& bound) {
+  if (bound.entry->table->active_if.empty()) return false;
+  const auto& conditions = bound.conditions;
+  return std::all_of(conditions.begin(), conditions.end(), [&](const BoundCondition& own) {
+    return std::any_of(conditions.begin(), conditions.end(), [&](const BoundCondition& c) {
+      return c.clause == own.clause && bound.slots[c.slot].withheld;
+    });
+  });
+}
+
 }  // namespace
 
 void follow_effects(BoundOperator& bound) {
@@ -133,6 +144,7 @@ void follow_effects(BoundOperator& bound) {
   for (std::size_t i = 0; i < bound.slots.size(); ++i) {
     bound.slots[i].withheld = bound.slots[i].column >= 0 && !bound.entry->hands_over(i);
   }
+  bound.idle = is_idle(bound);
 }
 
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
@@ -151,8 +163,8 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   bind_slots(bound, store, surface, mesh);
   // What follows from nothing is derived again when the parcels are others.
   if (bound.read_columns.empty()) bound.read_columns.push_back(store.dimension() - 1);
-  follow_effects(bound);
   bind_conditions(bound);
+  follow_effects(bound);
   bind_budgets(bound);
   const bool lend_mesh = scope == PILEUS_GLOBAL && mesh.extension != nullptr;
   bound.instance = std::make_unique<host::Instance>(

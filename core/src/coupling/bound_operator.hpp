@@ -27,6 +27,7 @@ struct BoundSlot {
 
 /// A comparison of an activity condition with its number filled in.
 struct BoundCondition {
+  std::size_t slot = 0;
   int column = -1;
   std::uint32_t clause = 0, comparison = 0;
   double value = 0;
@@ -53,6 +54,7 @@ struct BoundOperator {
   /// fields counted on from there.
   std::vector<int> read_columns;
   bool dormant = false;        // not called: all its effects wait to be switched on
+  bool idle = false;           // apply is not called: no clause of its activity can hold
   std::vector<MeshSlot> mesh;  // to be made before its hooks are called
   bool moves_parcels = false;  // apply writes positions
 

@@ -1,6 +1,7 @@
 // What the operators of a run cost, skipped and brought about.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -47,15 +48,19 @@ struct OperatorLedger {
   std::uint64_t retries = 0;
   std::uint64_t repairs = 0;  // reported by the plugin
   double core_seconds = 0;    // summed over threads
+  std::uint64_t applied = 0;  // parcels handed to apply, and the time that took
+  double apply_seconds = 0;
   std::vector<OperatorBudget> budgets;
   std::vector<host::Span> spans;  // timers of the plugin's own
 
   std::uint64_t skipped() const { return skipped_by_epoch + skipped_by_bounds + skipped_by_list; }
-  /// Time the skipped parcels would have cost at the price of the others, s.
+  /// Time the skipped parcels would have cost at the price of those apply was called for, s: at
+  /// most what skipping saved, since an inactive parcel costs less. NaN when it was called for
+  /// none.
   double seconds_saved() const {
-    return parcels > 0
-               ? core_seconds / static_cast<double>(parcels) * static_cast<double>(skipped())
-               : 0.0;
+    if (skipped() == 0) return 0;
+    if (applied == 0) return std::numeric_limits<double>::quiet_NaN();
+    return apply_seconds / static_cast<double>(applied) * static_cast<double>(skipped());
   }
 };
 

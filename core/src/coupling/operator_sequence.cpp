@@ -338,7 +338,7 @@ bool OperatorSequence::skip_by_epoch(std::size_t which) {
 }
 
 void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_half) {
-  if (bound_[which].dormant) return;
+  if (bound_[which].dormant || bound_[which].idle) return;
   refresh(at);
   if (skip_by_epoch(which)) {
     audit_idle(which, step_record(bound_[which], at, second_half));

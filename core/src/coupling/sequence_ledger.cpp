@@ -41,6 +41,8 @@ Ledger OperatorSequence::ledger() const {
       if (which >= work.applied.size()) return;
       counts.add(work.applied[which]);
       counts.add(work.diagnosed[which]);
+      entry.applied += work.applied[which].parcels;
+      entry.apply_seconds += work.applied[which].seconds;
     };
     for (const Workspace& work : workspaces_) collect(work);
     collect(whole_);

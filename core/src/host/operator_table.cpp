@@ -184,6 +184,15 @@ void check_condition(const pileus_condition& row, const std::string& place, cons
   }
 }
 
+/// The number a text is from its first to its last character, or NaN.
+template <class Number>
+double whole_text(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? static_cast<double>(value) : std::nan("");
+}
+
 /// The number a literal of a `when` stands for, or NaN.
 double literal(const pileus_parameter& p, std::string_view text) {
   if (p.type == PILEUS_SWITCH) return text == "true" ? 1 : text == "false" ? 0 : std::nan("");
@@ -193,10 +202,9 @@ double literal(const pileus_parameter& p, std::string_view text) {
     }
     return std::nan("");
   }
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return p.type == PILEUS_INTEGER && whole ? value : std::nan("");
+  return p.type == PILEUS_INTEGER  ? whole_text<int>(text)
+         : p.type == PILEUS_NUMBER ? whole_text<double>(text)
+                                   : std::nan("");
 }
 
 /// Parses what follows "effect.": "name == on" or "name != on".

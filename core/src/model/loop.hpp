@@ -58,8 +58,10 @@ class Loop {
   void report_progress(const dynamics::TimeStep& allowed);
   void report_activations();
   double share_of_run(double seconds) const;
+  output::CallSummary call_summary(const coupling::OperatorLedger& op) const;
   std::vector<output::EffectSummary> effect_summaries(const coupling::Ledger& ledger) const;
   std::vector<output::BudgetSummary> budget_summaries(const coupling::Ledger& ledger) const;
+  output::LeftOutSummary left_out() const;
   void write_status(const char* state) const;
 
   const scene::Scene& scene_;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/error.hpp"
 #include "coupling/quantity_plan.hpp"
 #include "dynamics/runge_kutta.hpp"
 #include "host/search.hpp"
@@ -83,6 +84,18 @@ std::string origin_of(const std::string& name,
   return "initial state";
 }
 
+/// Numbers of a parcel if all of these operators were there with all their effects; 0 where they
+/// contradict each other.
+int columns_of(const scene::Scene& scene, const std::vector<coupling::OperatorEntry>& operators) {
+  try {
+    return parcels::Store(scene.domain.dimension,
+                          coupling::plan_quantities(operators, initial_names(scene)).scalars)
+        .column_count();
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
 planner::DataFlow flow_of(const scene::Scene& scene,
                           const std::vector<coupling::OperatorEntry>& operators) {
   planner::DataFlow flow;
@@ -119,8 +132,11 @@ PlannedRun plan_run(const scene::Scene& scene, std::vector<coupling::OperatorEnt
   PlannedRun run;
   run.plan = planner::make_plan(scene, listed(operators), rules_for(operators),
                                 planner::survey_initial_state(scene));
+  const int all_columns = columns_of(scene, operators);
   run.operators = keep_called_for(run.plan, std::move(operators));
   run.plan.flow = flow_of(scene, run.operators);
+  run.plan.flow.bytes_left_out =
+      8.0 * std::max(0, all_columns - static_cast<int>(run.plan.flow.stored.size()));
   return run;
 }
 

@@ -8,6 +8,7 @@
 #include "model/loop.hpp"
 #include "model/provenance.hpp"
 #include "output/state_hash.hpp"
+#include "planner/costs.hpp"
 #include "planner/plan_text.hpp"
 
 namespace pileus::model {
@@ -41,21 +42,36 @@ double Loop::share_of_run(double seconds) const {
   return all > 0 ? seconds / all : 0.0;
 }
 
-/// Verdicts of the plan, and what happened to them. The time of an operator counts for every effect
+output::CallSummary Loop::call_summary(const coupling::OperatorLedger& op) const {
+  output::CallSummary calls;
+  calls.calls = op.parcels;
+  calls.skipped = op.skipped();
+  calls.seconds = op.core_seconds;
+  calls.share = share_of_run(op.core_seconds);
+  calls.retries = op.retries;
+  calls.repairs = op.repairs;
+  calls.skipped_by_epoch = op.skipped_by_epoch;
+  calls.skipped_by_bounds = op.skipped_by_bounds;
+  calls.skipped_by_list = op.skipped_by_list;
+  calls.audited = op.audited;
+  calls.seconds_saved = op.seconds_saved();
+  return calls;
+}
+
+/// Verdicts of the plan, and what happened to them. The calls of an operator count for every effect
 /// it provides.
 std::vector<output::EffectSummary> Loop::effect_summaries(const coupling::Ledger& ledger) const {
   std::vector<output::EffectSummary> effects;
   for (const planner::EffectPlan& effect : plan_.effects) {
     output::EffectSummary entry{effect.effect, word_of(effect.verdict),
-                                planner::reason_line(plan_, effect), 0.0, 0.0};
+                                planner::reason_line(plan_, effect)};
     for (const Activation& one : physics_.activations())
       if (one.effect == effect.effect)
         entry.reason += fmt::format("; switched on at t = {:.6g} s, step {}", one.time, one.step);
     for (const std::size_t i : effect.providers)
       for (const coupling::OperatorLedger& op : ledger.operators)
         if (op.name == plan_.operators[i].name && effect.verdict != planner::Verdict::off)
-          entry.seconds += op.core_seconds;
-    entry.share = share_of_run(entry.seconds);
+          entry.calls.add(call_summary(op));
     effects.push_back(std::move(entry));
   }
   return effects;
@@ -77,6 +93,17 @@ std::vector<output::BudgetSummary> Loop::budget_summaries(const coupling::Ledger
     budgets.push_back(budget);
   }
   return budgets;
+}
+
+/// Memory by the plan, time by the costs kept on this machine, unless what was left out came on.
+output::LeftOutSummary Loop::left_out() const {
+  output::LeftOutSummary left;
+  left.bytes_per_parcel = plan_.flow.bytes_left_out;
+  planner::Plan priced = plan_;
+  planner::predict_time(scene_, planner::Costs::read(planner::Costs::default_path()), priced);
+  if (priced.flow.seconds_left_out && physics_.activations().empty())
+    left.seconds = *priced.flow.seconds_left_out * totals_.parcel_steps;
+  return left;
 }
 
 output::Summary Loop::summary() const {
@@ -105,19 +132,12 @@ output::Summary Loop::summary() const {
 
   const coupling::Ledger ledger = sequence_.ledger();
   for (const auto& op : ledger.operators) {
-    output::OperatorSummary one{op.name,         op.parcels, op.skipped(),
-                                op.core_seconds, op.retries, op.repairs};
-    one.share = share_of_run(op.core_seconds);
-    one.skipped_by_epoch = op.skipped_by_epoch;
-    one.skipped_by_bounds = op.skipped_by_bounds;
-    one.skipped_by_list = op.skipped_by_list;
-    one.audited = op.audited;
-    one.seconds_saved = op.seconds_saved();
-    s.operators.push_back(std::move(one));
+    s.operators.push_back({op.name, call_summary(op)});
   }
   s.watch = {physics_.tripwires().checks(), physics_.tripwires().seconds()};
   s.effects = effect_summaries(ledger);
   s.budgets = budget_summaries(ledger);
+  s.left_out = left_out();
   std::map<std::string, std::vector<double>> beside_parcels = sequence_.surface().named_values();
   const auto& wind = simulation_->mean_wind().velocity;
   beside_parcels["mean_wind"] = {wind[0], wind[1]};

@@ -60,23 +60,34 @@ std::string phase_table(const Summary& s) {
   return text;
 }
 
+std::string saved(double seconds) {
+  return std::isfinite(seconds) ? fmt::format("{:.3f}", seconds) : std::string("n/a");
+}
+
+/// Cost and calls, as the columns that operators and effects have in common.
+std::string call_columns(const CallSummary& one) {
+  return fmt::format("{:>9.3f}{:>7.1f} %{:>15}{:>15}{:>9}{:>9}{:>9}", one.seconds, 100 * one.share,
+                     format_count(one.calls), format_count(one.skipped), saved(one.seconds_saved),
+                     format_count(one.retries), format_count(one.repairs));
+}
+
+std::string call_head(const char* what) {
+  return fmt::format("\n  {:<20}{:>9}{:>9}{:>15}{:>15}{:>9}{:>9}{:>9}\n", what, "seconds", "share",
+                     "parcel calls", "skipped", "saved <=", "retries", "repairs");
+}
+
 std::string operator_table(const Summary& s) {
   if (s.operators.empty() && s.watch.checks == 0) return {};
-  std::string text =
-      fmt::format("\n  {:<20}{:>9}{:>9}{:>15}{:>15}{:>9}{:>9}{:>9}\n", "operator", "seconds",
-                  "share", "parcel calls", "skipped", "saved s", "retries", "repairs");
+  std::string text = call_head("operator");
   for (const OperatorSummary& one : s.operators) {
-    text += fmt::format("  {:<20}{:>9.3f}{:>7.1f} %{:>15}{:>15}{:>9.3f}{:>9}{:>9}\n", one.name,
-                        one.seconds, 100 * one.share, format_count(one.calls),
-                        format_count(one.skipped), one.seconds_saved, format_count(one.retries),
-                        format_count(one.repairs));
-    if (one.skipped > 0)
+    text += fmt::format("  {:<20}{}\n", one.name, call_columns(one.calls));
+    if (one.calls.skipped > 0)
       text += fmt::format(
           "  {:<20}skipped because nothing had changed {}, by block {}, by parcel {}"
           "{}\n",
-          "", format_count(one.skipped_by_epoch), format_count(one.skipped_by_bounds),
-          format_count(one.skipped_by_list),
-          one.audited > 0 ? "; audited " + format_count(one.audited) : "");
+          "", format_count(one.calls.skipped_by_epoch), format_count(one.calls.skipped_by_bounds),
+          format_count(one.calls.skipped_by_list),
+          one.calls.audited > 0 ? "; audited " + format_count(one.calls.audited) : "");
   }
   if (s.watch.checks > 0)
     text += fmt::format("  {:<20}{:>9.3f}  {} looks at what was left out\n", "watch",
@@ -86,11 +97,27 @@ std::string operator_table(const Summary& s) {
 
 std::string effect_table(const Summary& s) {
   if (s.effects.empty()) return {};
-  std::string text = fmt::format("\n  {:<16}{:>8}{:>9}{:>9}  {}\n", "effect", "verdict", "seconds",
-                                 "share", "because");
-  for (const EffectSummary& effect : s.effects)
-    text += fmt::format("  {:<16}{:>8}{:>9.3f}{:>7.1f} %  {}\n", effect.name, effect.verdict,
-                        effect.seconds, 100 * effect.share, wrap_text(effect.reason, 46));
+  std::string text = call_head("effect");
+  for (const EffectSummary& effect : s.effects) {
+    const std::string why = effect.verdict + ": " + effect.reason;
+    if (effect.calls.calls == 0 && effect.calls.skipped == 0) {
+      text += fmt::format("  {:<20} {}\n", effect.name, wrap_text(why, 23));
+    } else {
+      text += fmt::format("  {:<20}{}\n    {}\n", effect.name, call_columns(effect.calls),
+                          wrap_text(why, 4));
+    }
+  }
+  const LeftOutSummary& left = s.left_out;
+  if (left.bytes_per_parcel > 0 || left.seconds > 0)
+    text += "  " +
+            wrap_text(fmt::format(
+                          "done without: {:.0f} bytes per parcel ({}), {}", left.bytes_per_parcel,
+                          bytes(left.bytes_per_parcel * s.parcels_mean),
+                          std::isfinite(left.seconds)
+                              ? fmt::format("{:.3g} s of one core at measured costs", left.seconds)
+                              : "time not known: 'pileus plan SCENE --measure' measures it"),
+                      2) +
+            "\n";
   return text;
 }
 

@@ -69,30 +69,31 @@ Json diagnostics_of(const Summary& summary) {
   });
 }
 
+Json calls_of(const CallSummary& one) {
+  return {{"calls", one.calls},
+          {"skipped", one.skipped},
+          {"skipped_by",
+           {{"epoch", one.skipped_by_epoch},
+            {"bounds", one.skipped_by_bounds},
+            {"list", one.skipped_by_list}}},
+          {"audited", one.audited},
+          {"seconds", finite("time of calls", one.seconds)},
+          {"share", number_or_null(one.share)},
+          {"seconds_saved", number_or_null(one.seconds_saved)},
+          {"retries", one.retries},
+          {"repairs", one.repairs}};
+}
+
 Json effects_of(const Summary& summary) {
   return by_name(summary.effects, [](const EffectSummary& effect) {
-    return Json{{"verdict", effect.verdict},
-                {"reason", effect.reason},
-                {"seconds", finite("effect time", effect.seconds)},
-                {"share", number_or_null(effect.share)}};
+    Json entry{{"verdict", effect.verdict}, {"reason", effect.reason}};
+    entry.update(calls_of(effect.calls));
+    return entry;
   });
 }
 
 Json operators_of(const Summary& summary) {
-  return by_name(summary.operators, [](const OperatorSummary& one) {
-    return Json{{"calls", one.calls},
-                {"skipped", one.skipped},
-                {"skipped_by",
-                 {{"epoch", one.skipped_by_epoch},
-                  {"bounds", one.skipped_by_bounds},
-                  {"list", one.skipped_by_list}}},
-                {"audited", one.audited},
-                {"seconds", finite("operator time", one.seconds)},
-                {"share", number_or_null(one.share)},
-                {"seconds_saved", number_or_null(one.seconds_saved)},
-                {"retries", one.retries},
-                {"repairs", one.repairs}};
-  });
+  return by_name(summary.operators, [](const OperatorSummary& one) { return calls_of(one.calls); });
 }
 
 Json budgets_of(const Summary& summary) {
@@ -134,6 +135,20 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
+void CallSummary::add(const CallSummary& other) {
+  calls += other.calls;
+  skipped += other.skipped;
+  seconds += other.seconds;
+  retries += other.retries;
+  repairs += other.repairs;
+  share += other.share;
+  skipped_by_epoch += other.skipped_by_epoch;
+  skipped_by_bounds += other.skipped_by_bounds;
+  skipped_by_list += other.skipped_by_list;
+  audited += other.audited;
+  seconds_saved += other.seconds_saved;
+}
+
 std::string to_json(const Summary& s) {
   Json json;
   json["status"] = name_of(s.status);
@@ -157,6 +172,8 @@ std::string to_json(const Summary& s) {
   json["effects"] = effects_of(s);
   json["operators"] = operators_of(s);
   json["watch"] = {{"checks", s.watch.checks}, {"seconds", finite("watch", s.watch.seconds)}};
+  json["left_out"] = {{"bytes_per_parcel", number_or_null(s.left_out.bytes_per_parcel)},
+                      {"core_s", number_or_null(s.left_out.seconds)}};
   json["budgets"] = budgets_of(s);
   json["expect"] = expect_of(s);
   json["state_sha256"] = s.state_sha256;

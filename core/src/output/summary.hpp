@@ -27,12 +27,33 @@ struct DiagnosticSummary {
   std::optional<double> relative_change;  // (final − initial)/|initial|, of conserved ones
 };
 
+/// What calling or skipping parcels amounted to.
+struct CallSummary {
+  std::uint64_t calls = 0;    // of apply or diagnose, in parcels
+  std::uint64_t skipped = 0;  // parcels left out because they were inactive
+  double seconds = 0;         // summed over threads
+  std::uint64_t retries = 0, repairs = 0;
+  double share = 0;  // of the run's wall time on all its threads
+  // The skipped parcels by what ruled them out, and those called after all to compare.
+  std::uint64_t skipped_by_epoch = 0, skipped_by_bounds = 0, skipped_by_list = 0, audited = 0;
+  // At most: what the skipped ones would have cost at the price of the others, s.
+  double seconds_saved = 0;
+
+  void add(const CallSummary& other);
+};
+
+/// An effect; its calls are those of all operators that provide it.
 struct EffectSummary {
   std::string name;
   std::string verdict;  // on, off or watch
   std::string reason;   // one sentence
-  double seconds = 0;   // of the operators that provide it, summed over threads
-  double share = 0;     // of the run's wall time on all its threads
+  CallSummary calls = {};
+};
+
+/// What the run did without because effects were off.
+struct LeftOutSummary {
+  double bytes_per_parcel = 0;
+  double seconds = not_available;  // of one core, at measured costs
 };
 
 /// The watch over effects that were left out.
@@ -43,14 +64,7 @@ struct WatchSummary {
 
 struct OperatorSummary {
   std::string name;
-  std::uint64_t calls = 0;    // of apply or diagnose, in parcels
-  std::uint64_t skipped = 0;  // parcels left out because they were inactive
-  double seconds = 0;         // summed over threads
-  std::uint64_t retries = 0, repairs = 0;
-  double share = 0;  // of the run's wall time on all its threads
-  // The skipped parcels by what ruled them out, and those called after all to compare.
-  std::uint64_t skipped_by_epoch = 0, skipped_by_bounds = 0, skipped_by_list = 0, audited = 0;
-  double seconds_saved = 0;  // what the skipped ones would have cost at the price of the others
+  CallSummary calls = {};
 };
 
 /// A closed sum: final = initial + sources + defect.
@@ -94,6 +108,7 @@ struct Summary {
   std::vector<EffectSummary> effects;
   std::vector<OperatorSummary> operators;
   WatchSummary watch;
+  LeftOutSummary left_out;
   std::vector<BudgetSummary> budgets;
   std::vector<ExpectSummary> expect;
   std::string state_sha256;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -71,13 +72,37 @@ std::string core_part(const scene::Scene& scene) {
                      scene.time.scheme == scene::RungeKutta::order4_stages5 ? "rk4" : "rk3");
 }
 
-std::string operator_part(const OperatorPlan& op) {
-  return fmt::format("{} {} ({})", op.id, op.version, fmt::join(op.on, ", "));
+std::string operator_part(const OperatorPlan& op, bool everything) {
+  std::vector<std::string> on = op.on;
+  if (everything) {
+    on.insert(on.end(), op.watched.begin(), op.watched.end());
+    on.insert(on.end(), op.off.begin(), op.off.end());
+  }
+  std::sort(on.begin(), on.end());
+  return fmt::format("{} {} ({})", op.id, op.version, fmt::join(on, ", "));
 }
+
+namespace {
+
+/// What leaving effects out saves per parcel and step; nothing if a cost of it is unknown.
+std::optional<double> seconds_left_out(const Costs& costs, const Plan& plan) {
+  double saved = 0;
+  for (const OperatorPlan& op : plan.operators) {
+    if (!op.leaves_out()) continue;
+    const Cost* all = costs.find(operator_part(op, true));
+    const Cost* own = op.present ? costs.find(operator_part(op)) : nullptr;
+    if (all == nullptr || (op.present && own == nullptr)) return std::nullopt;
+    saved += all->seconds - (op.present ? own->seconds : 0.0);
+  }
+  return saved;
+}
+
+}  // namespace
 
 void predict_time(const scene::Scene& scene, const Costs& costs, Plan& plan) {
   plan.flow.seconds_per_step.reset();
   plan.flow.steps.reset();
+  plan.flow.seconds_left_out = seconds_left_out(costs, plan);
   if (scene.time.fixed)
     plan.flow.steps = static_cast<std::uint64_t>(std::ceil(scene.time.end / *scene.time.fixed));
   std::vector<std::string> parts = {core_part(scene)};

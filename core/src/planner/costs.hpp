@@ -37,10 +37,11 @@ class Costs {
 
 /// Name of the core's part for a scene.
 std::string core_part(const scene::Scene& scene);
-/// Name of an operator's part: its id and which of its effects are on.
-std::string operator_part(const OperatorPlan& op);
+/// Name of an operator's part: its id and which of its effects are on, or all of them.
+std::string operator_part(const OperatorPlan& op, bool everything = false);
 
-/// Fills in the predicted time of a step if every part has been measured; else says how to measure.
+/// Fills in the predicted time of a step, and what is saved by what was left out, where every part
+/// has been measured; else says how to measure.
 void predict_time(const scene::Scene& scene, const Costs& costs, Plan& plan);
 
 }  // namespace pileus::planner

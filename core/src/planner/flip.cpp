@@ -64,6 +64,9 @@ std::vector<Flip> find_flips(const EffectPlan& effect, const std::vector<std::st
     if (!formula.uses(i)) continue;
     const double from = i < extrema.size() ? extrema[i] : formula.value(i);
     const double factor = factor_of(formula, extrema, i);
+    const bool has_partner = i < extrema.size();  // the other end of the same range
+    const double partner = has_partner ? extrema[i ^ 1u] : 0;
+    if (has_partner && (i % 2 == 0 ? from * factor > partner : from * factor < partner)) continue;
     if (factor > 0) flips.push_back({readable(formula.name(i)), from, from * factor});
   }
   std::sort(flips.begin(), flips.end(), [](const Flip& a, const Flip& b) {

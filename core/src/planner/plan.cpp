@@ -25,13 +25,6 @@ bool provides(const ListedOperator& op, const std::string& effect) {
   return false;
 }
 
-std::vector<std::string> provided_by(const ListedOperator& op) {
-  std::vector<std::string> names;
-  for (const pileus_effect& row : op.table->effects)
-    if (row.role == PILEUS_PROVIDES && provides(op, row.name)) names.emplace_back(row.name);
-  return names;
-}
-
 /// Whether a row is a quantity of the parcels that `apply` changes.
 bool is_written(const pileus_quantity& row) {
   return row.place == PILEUS_PARCEL && row.nature != PILEUS_DERIVED &&
@@ -111,11 +104,25 @@ class Judge {
       effect.remedy = fmt::format("switch {} on: {}: on under 'effects'", need, need);
       return;
     }
+    if (is_fed(effect)) return;
     for (const RuleCase& c : rule->cases)
       if (applies(c, effect)) return apply(c, effect);
-    effect.reason = rule->cases.empty()
-                        ? "the scene lists its operator"
-                        : "the scene lists its operator, and no case of its rule applies";
+    const bool any_number = std::any_of(rule->cases.begin(), rule->cases.end(),
+                                        [](const RuleCase& c) { return !c.always_off; });
+    effect.reason = any_number ? "the scene lists its operator, and no case of its rule applies"
+                               : "the scene lists its operator";
+  }
+
+  /// Whether an effect that is not off brings about what this one acts on: then it is on.
+  bool is_fed(EffectPlan& effect) const {
+    for (const std::string& feeder : effect.rule->fed_by) {
+      const EffectPlan* other = plan_.find(feeder);
+      if (other == nullptr || other->verdict == Verdict::off) continue;
+      effect.reason = fmt::format("{} is {}", feeder, word_of(other->verdict));
+      effect.remedy = fmt::format("switch {} off: {}: off under 'effects'", feeder, feeder);
+      return true;
+    }
+    return false;
   }
 
   /// The operator whose parameters a case looks at, or null; `applies` when its condition holds.
@@ -146,7 +153,10 @@ class Judge {
 
   bool applies(const RuleCase& c, const EffectPlan& effect) const {
     bool holds = false;
-    subject(c, effect, holds);
+    const ListedOperator* op = subject(c, effect, holds);
+    if (!c.potential_temperature.empty() &&
+        (op == nullptr || !inputs_of(op->table.get(), op->values, {}, 0).saturation))
+      return false;
     const auto carried = [&](const std::string& name) { return quantity(name) >= 0; };
     return holds && std::all_of(c.carried.begin(), c.carried.end(), carried) &&
            std::none_of(c.absent.begin(), c.absent.end(), carried);
@@ -232,12 +242,11 @@ class Judge {
     if (row < 0) return false;
     const pileus_quantity& q = op.table->quantities[static_cast<std::size_t>(row)];
     if (q.nature == PILEUS_EXTENSIVE) return true;  // amounts add up when parcels merge
-    if (!is_written(q)) return false;
+    if (!is_written(q) || is_left_out(op, row, effect)) return false;
     for (const std::string& other : provided_by(op)) {
       const Rule* rule = rules_.find(other);
-      if (other == effect.effect) continue;
-      if (rule != nullptr && (rule->always || rule->keeps_extrema)) continue;
-      if (rule != nullptr && depends(*rule, effect.effect)) continue;
+      if (other == effect.effect || rules_.follows(other, effect.effect)) continue;
+      if (rule != nullptr && (rule->always || keeps_extrema(*rule, op))) continue;
       const EffectPlan* judged = plan_.find(other);
       if (judged != nullptr && judged->verdict == Verdict::off) continue;
       return true;
@@ -245,12 +254,32 @@ class Judge {
     return provided_by(op).empty();
   }
 
-  bool depends(const Rule& rule, const std::string& on) const {
-    for (const std::string& need : rule.needs) {
-      const Rule* other = rules_.find(need);
-      if (need == on || (other != nullptr && other != &rule && depends(*other, on))) return true;
-    }
-    return false;
+  /// Whether a row of an operator is not there while the effect that is judged is off.
+  bool is_left_out(const ListedOperator& op, int row, const EffectPlan& effect) const {
+    const host::When& when = op.table->quantity_when[static_cast<std::size_t>(row)];
+    return std::any_of(when.begin(), when.end(), [&](const host::WhenTerm& term) {
+      if (!term.is_effect) return !host::holds({term}, op.values->numbers());
+      const std::string name = op.table->effects[term.index].name;
+      const EffectPlan* judged = plan_.find(name);
+      const bool off = name == effect.effect || rules_.follows(name, effect.effect) ||
+                       (judged != nullptr && judged->verdict == Verdict::off);
+      return off && term.equal;
+    });
+  }
+
+  static bool keeps_extrema(const Rule& rule, const ListedOperator& op) {
+    return rule.keeps_extrema &&
+           std::none_of(rule.spreads.begin(), rule.spreads.end(), [&](const std::string& name) {
+             const int index = op.table->find_parameter(name);
+             return index >= 0 && !is_zero(op, index);
+           });
+  }
+
+  static bool is_zero(const ListedOperator& op, int parameter) {
+    if (op.table->parameters[static_cast<std::size_t>(parameter)].type != PILEUS_NUMBERS)
+      return op.values->numbers()[parameter] == 0;
+    const std::vector<double>& list = op.values->list(parameter);
+    return std::all_of(list.begin(), list.end(), [](double value) { return value == 0; });
   }
 
   void describe_parameter(const ListedOperator* op, Fact& fact) const {
@@ -289,6 +318,13 @@ class Judge {
   std::vector<Extrema> extrema_;  // of plan_.quantities
 };
 
+/// Whether an effect is not there because the scene lists no operator for it, and for no other
+/// reason that the rules know.
+bool has_nothing_to_say(const EffectPlan& effect) {
+  return effect.providers.empty() && effect.rule_case == nullptr && effect.rule != nullptr &&
+         effect.rule->needs.empty() && effect.rule->fed_by.empty();
+}
+
 /// Rules in their order, then what operators provide beside.
 std::vector<std::string> known_effects(const Rules& rules,
                                        const std::vector<ListedOperator>& operators) {
@@ -301,6 +337,7 @@ std::vector<std::string> known_effects(const Rules& rules,
 }
 
 void describe_operators(const std::vector<ListedOperator>& operators, Plan& plan) {
+  plan.operators.clear();
   for (const ListedOperator& op : operators) {
     OperatorPlan entry{op.name, op.table->op.id, op.table->op.version, false, {}, {}, {}};
     for (const std::string& name : provided_by(op)) {
@@ -316,6 +353,13 @@ void describe_operators(const std::vector<ListedOperator>& operators, Plan& plan
 }
 
 }  // namespace
+
+std::vector<std::string> provided_by(const ListedOperator& op) {
+  std::vector<std::string> names;
+  for (const pileus_effect& row : op.table->effects)
+    if (row.role == PILEUS_PROVIDES && provides(op, row.name)) names.emplace_back(row.name);
+  return names;
+}
 
 const char* word_of(Verdict verdict) {
   return verdict == Verdict::on ? "on" : verdict == Verdict::off ? "off" : "watch";
@@ -343,11 +387,13 @@ Plan make_plan(const scene::Scene& scene, const std::vector<ListedOperator>& ope
     judge.judge(effect);
     // Where nothing derives what no run can be without, the parcels carry it.
     if (effect.providers.empty() && effect.rule != nullptr && effect.rule->always) continue;
-    call_for_requested_output(scene, operators, effect);
+    call_for_requested_output(scene, operators, *plan.rules, effect);
     obey_request(scene.effects, effect);
+    if (has_nothing_to_say(effect)) continue;
     plan.effects.push_back(std::move(effect));
   }
   describe_operators(operators, plan);
+  if (keep_inseparable(scene.effects, operators, plan)) describe_operators(operators, plan);
   return plan;
 }
 

@@ -22,6 +22,9 @@ struct ListedOperator {
   const host::ParameterValues* values = nullptr;
 };
 
+/// Names of the effects it provides with its parameters.
+std::vector<std::string> provided_by(const ListedOperator& op);
+
 struct Fact {
   std::string name, unit;
   double value = 0;
@@ -63,6 +66,7 @@ struct OperatorPlan {
   std::string name, id, version;
   bool present = true;
   std::vector<std::string> on, watched, off;  // effects it provides
+  bool leaves_out() const { return !watched.empty() || !off.empty(); }
 };
 
 /// What follows for memory and the mesh; filled in by whoever builds the run.
@@ -79,6 +83,9 @@ struct DataFlow {
   std::optional<double> seconds_per_step;  // of one core, from measured costs
   std::string cost_source;                 // where they were measured, or how to
   std::optional<std::uint64_t> steps;      // known beforehand for a fixed time step
+  // What would come on top if every effect of the listed operators were on.
+  double bytes_left_out = 0;               // of each parcel
+  std::optional<double> seconds_left_out;  // of one core per parcel and step, from measured costs
 };
 
 struct Plan {

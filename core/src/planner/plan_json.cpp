@@ -56,6 +56,9 @@ Json flow_json(const DataFlow& flow) {
   json["core_seconds_per_step"] =
       flow.seconds_per_step ? number(*flow.seconds_per_step) : Json(nullptr);
   json["cost_source"] = flow.cost_source;
+  json["bytes_left_out_per_parcel"] = number(flow.bytes_left_out);
+  json["core_seconds_left_out_per_parcel_step"] =
+      flow.seconds_left_out ? number(*flow.seconds_left_out) : Json(nullptr);
   json["steps"] = flow.steps ? Json(*flow.steps) : Json(nullptr);
   return json;
 }

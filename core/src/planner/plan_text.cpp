@@ -22,10 +22,10 @@ std::string names_of(const std::vector<std::string>& names) {
 }
 
 std::string effects_section(const Plan& plan) {
-  constexpr std::size_t indent = 27;
-  std::string text = fmt::format("\n  {:<17}{:<8}{}\n", "effect", "", "because");
+  constexpr std::size_t indent = 31;
+  std::string text = fmt::format("\n  {:<21}{:<8}{}\n", "effect", "", "because");
   for (const EffectPlan& effect : plan.effects)
-    text += fmt::format("  {:<16} {:<8}{}\n", effect.effect, upper(word_of(effect.verdict)),
+    text += fmt::format("  {:<20} {:<8}{}\n", effect.effect, upper(word_of(effect.verdict)),
                         wrap_text(reason_line(plan, effect), indent));
   return text;
 }
@@ -53,6 +53,15 @@ std::string total_time(const DataFlow& flow) {
                      *flow.seconds_per_step * static_cast<double>(*flow.steps), *flow.steps);
 }
 
+std::string saving_of(const DataFlow& flow) {
+  const auto parcels = static_cast<double>(flow.parcels);
+  return fmt::format("{:.0f} B per parcel, {:.3g} MB; {}", flow.bytes_left_out,
+                     flow.bytes_left_out * parcels / 1e6,
+                     flow.seconds_left_out ? fmt::format("{:.3g} s of one core per step",
+                                                         *flow.seconds_left_out * parcels)
+                                           : std::string("its time has not been measured"));
+}
+
 std::string flow_section(const Plan& plan) {
   const DataFlow& flow = plan.flow;
   std::vector<std::string> stored;
@@ -70,6 +79,8 @@ std::string flow_section(const Plan& plan) {
       line("memory", fmt::format("{:.0f} B per parcel, {:.3g} parcels at the start: {:.3g} MB",
                                  flow.bytes_per_parcel, static_cast<double>(flow.parcels),
                                  flow.bytes_per_parcel * static_cast<double>(flow.parcels) / 1e6));
+  if (flow.bytes_left_out > 0 || flow.seconds_left_out.value_or(0) > 0)
+    text += line("left out", saving_of(flow));
   text +=
       line("predicted", flow.seconds_per_step ? fmt::format("{:.3g} s of one core per step{} ({})",
                                                             *flow.seconds_per_step,
@@ -81,7 +92,8 @@ std::string flow_section(const Plan& plan) {
 std::string formula_lines(const EffectPlan& effect) {
   std::string text;
   const auto line = [&](const RuleFormula& f) {
-    text += fmt::format("    {} = {}\n      = {:.6g}\n", f.name, f.text,
+    text += fmt::format("    {}\n      = {:.6g}\n",
+                        wrap_text(fmt::format("{} = {}", f.name, f.text), 6),
                         effect.formula->value(f.name).value_or(0));
   };
   for (const RuleFormula& f : effect.rule_case->let) line(f);
@@ -129,8 +141,11 @@ std::string explain_effect(const Plan& plan, const EffectPlan& effect) {
     text += fmt::format("\n  number ({}, {})\n", scene::describe(effect.rule_case->where),
                         word_of(effect.evidence));
     text += formula_lines(effect);
-    text += fmt::format("    {}: {:.6g}; called for above {:.6g}\n", effect.rule_case->quantity,
-                        *effect.number, effect.rule_case->threshold);
+    text += fmt::format(
+        "    {}\n",
+        wrap_text(fmt::format("{}: {:.6g}; called for above {:.6g}", effect.rule_case->quantity,
+                              *effect.number, effect.rule_case->threshold),
+                  4));
     text += "\n  facts\n";
     for (const Fact& fact : effect.facts)
       text += fmt::format("    {} = {:.6g}{}\n      {}: {}\n", fact.name, fact.value,

@@ -1,6 +1,7 @@
 #include "planner/requested.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -39,7 +40,7 @@ std::vector<Wanted> wanted_names(const scene::Scene& scene) {
 }
 
 /// Quantities that exist only where an effect is on: those whose `when` asks for it, and all that
-/// an operator owns which provides nothing else.
+/// an operator owns, or adds up on the ground, which provides nothing else.
 std::vector<std::string> quantities_of(const ListedOperator& op, const std::string& effect) {
   std::vector<std::string> names;
   bool alone = true;
@@ -47,12 +48,39 @@ std::vector<std::string> quantities_of(const ListedOperator& op, const std::stri
     alone = alone && (row.role != PILEUS_PROVIDES || effect == row.name);
   for (std::size_t i = 0; i < op.table->quantities.size(); ++i) {
     const pileus_quantity& row = op.table->quantities[i];
-    bool gated = alone && (row.access & PILEUS_CREATE) != 0;
+    const bool on_the_ground = row.place == PILEUS_SURFACE && (row.access & PILEUS_ADD) != 0;
+    bool gated = alone && (on_the_ground || (row.access & PILEUS_CREATE) != 0);
     for (const host::WhenTerm& term : op.table->quantity_when[i])
       gated = gated || (term.is_effect && effect == op.table->effects[term.index].name);
     if (gated) names.emplace_back(row.name);
   }
   return names;
+}
+
+/// Names that show an effect, or one that cannot happen without it.
+std::vector<std::string> names_showing(const std::vector<ListedOperator>& operators,
+                                       const Rules& rules, const std::string& effect) {
+  std::vector<std::string> shows;
+  for (const ListedOperator& op : operators)
+    for (const std::string& provided : provided_by(op)) {
+      if (provided != effect && !rules.follows(provided, effect)) continue;
+      if (const Rule* rule = rules.find(provided))
+        shows.insert(shows.end(), rule->shown_by.begin(), rule->shown_by.end());
+      for (const std::string& quantity : quantities_of(op, provided)) {
+        shows.push_back(quantity);
+        for (const char* start : {"mean_", "min_", "max_"}) shows.push_back(start + quantity);
+      }
+    }
+  return shows;
+}
+
+/// Whether an operator can be run without an effect it provides: it has quantities that exist only
+/// with it.
+bool can_leave_out(const ListedOperator& op, const std::string& effect) {
+  for (const host::When& when : op.table->quantity_when)
+    for (const host::WhenTerm& term : when)
+      if (term.is_effect && effect == op.table->effects[term.index].name) return true;
+  return false;
 }
 
 }  // namespace
@@ -70,15 +98,10 @@ void check_requests(const scene::EffectRequests& requests, const std::vector<std
 }
 
 void call_for_requested_output(const scene::Scene& scene,
-                               const std::vector<ListedOperator>& operators, EffectPlan& effect) {
+                               const std::vector<ListedOperator>& operators, const Rules& rules,
+                               EffectPlan& effect) {
   if (effect.verdict == Verdict::on || effect.providers.empty()) return;
-  std::vector<std::string> shows;
-  if (effect.rule != nullptr) shows = effect.rule->shown_by;
-  for (const std::size_t i : effect.providers)
-    for (const std::string& quantity : quantities_of(operators[i], effect.effect)) {
-      shows.push_back(quantity);
-      for (const char* start : {"mean_", "min_", "max_"}) shows.push_back(start + quantity);
-    }
+  const std::vector<std::string> shows = names_showing(operators, rules, effect.effect);
   for (const Wanted& wanted : wanted_names(scene)) {
     if (std::find(shows.begin(), shows.end(), wanted.name) == shows.end()) continue;
     effect.verdict = Verdict::on;
@@ -122,6 +145,33 @@ void obey_request(const scene::EffectRequests& requests, EffectPlan& effect) {
                               word_of(effect.verdict), effect.reason);
   effect.verdict = verdict;
   effect.forced = true;
+}
+
+bool keep_inseparable(const scene::EffectRequests& requests,
+                      const std::vector<ListedOperator>& operators, Plan& plan) {
+  bool any = false;
+  for (EffectPlan& effect : plan.effects) {
+    for (const std::size_t i : effect.providers) {
+      const OperatorPlan& op = plan.operators[i];
+      if (!effect.forced || effect.verdict != Verdict::off || !op.present ||
+          can_leave_out(operators[i], effect.effect))
+        continue;
+      std::vector<std::string> others = op.on;
+      others.insert(others.end(), op.watched.begin(), op.watched.end());
+      const std::string reason = fmt::format("operator '{}' ({}) cannot leave it out without {}",
+                                             op.name, op.id, fmt::join(others, ", "));
+      for (const auto& request : requests.requests)
+        if (request.name == effect.effect)
+          throw Error(ExitCode::usage,
+                      fmt::format("{}: error: '{}' cannot be off here: {}",
+                                  scene::describe(request.where), effect.effect, reason));
+      effect.verdict = Verdict::on;
+      effect.forced = effect.against_evidence = false;
+      effect.reason = reason;
+      any = true;
+    }
+  }
+  return any;
 }
 
 }  // namespace pileus::planner

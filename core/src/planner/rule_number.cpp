@@ -11,6 +11,8 @@
 namespace pileus::planner {
 namespace {
 
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
 /// The hydrostatic state an operator's parameters describe, if it has all of them.
 std::shared_ptr<const thermo::ReferenceState> reference_of(const host::OperatorTable& table,
                                                            const host::ParameterValues& values) {
@@ -52,6 +54,7 @@ RuleInputs inputs_of(const host::OperatorTable* table, const host::ParameterValu
       inputs.parameters.emplace_back(p.name, values->numbers()[i]);
   }
   inputs.reference = reference_of(*table, *values);
+  if (inputs.reference) inputs.saturation = saturation_of(*table, *values);
   return inputs;
 }
 
@@ -66,8 +69,8 @@ RuleNumber::RuleNumber(const RuleCase& rule_case, RuleInputs inputs)
     names_.push_back(name);
     values_.push_back(value);
   }
-  input_count_ = reference_ = names_.size();
-  if (inputs_.reference) names_.emplace_back("reference_exner");
+  input_count_ = names_.size();
+  find_air(rule_case);
   const auto compile = [&](const RuleFormula& formula) {
     try {
       formulas_.emplace_back(formula.text, names_, std::map<std::string, double>{});
@@ -83,6 +86,23 @@ RuleNumber::RuleNumber(const RuleCase& rule_case, RuleInputs inputs)
   find_used();
 }
 
+/// The names that follow from a reference state: which there are, and what they follow from.
+void RuleNumber::find_air(const RuleCase& rule_case) {
+  const auto position = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  };
+  reference_ = saturation_ = none;
+  if (!inputs_.reference) return;
+  height_ = position("lowest_height");
+  theta_ = position("lowest_" + rule_case.potential_temperature);
+  epsilon_ = position("epsilon");
+  reference_ = names_.size();
+  names_.emplace_back("reference_exner");
+  if (!inputs_.saturation || std::max(theta_, epsilon_) >= input_count_) return;
+  saturation_ = names_.size();
+  names_.emplace_back("lowest_saturation_humidity");
+}
+
 /// From the end backwards, since a formula uses only names before its own.
 void RuleNumber::find_used() {
   used_.assign(names_.size(), false);
@@ -92,19 +112,27 @@ void RuleNumber::find_used() {
     for (std::size_t n = 0; used_[own] && n < own; ++n)
       if (formulas_[f].uses(n)) used_[n] = true;
   }
-  if (inputs_.reference && used_[reference_]) {
-    const auto height = std::find(names_.begin(), names_.end(), "highest_height");
-    used_[static_cast<std::size_t>(height - names_.begin())] = true;
+  if (saturation_ != none && used_[saturation_]) {
+    used_[reference_] = true;
+    for (const std::size_t n : {height_, height_ + 1, theta_, theta_ + 1, epsilon_})
+      used_[n] = true;
   }
+  if (reference_ != none && used_[reference_]) used_[height_ + 1] = true;
+}
+
+void RuleNumber::fill_derived() {
+  if (reference_ == none) return;
+  const Interval exner{inputs_.reference->at(values_[height_ + 1]).exner,
+                       inputs_.reference->at(values_[height_]).exner};
+  values_[reference_] = exner.low;
+  if (saturation_ == none || !used_[saturation_]) return;
+  values_[saturation_] = lowest_saturation_humidity(*inputs_.saturation, values_[epsilon_], exner,
+                                                    {values_[theta_], values_[theta_ + 1]});
 }
 
 double RuleNumber::operator()(const double* extrema) {
   std::copy_n(extrema, 2 * inputs_.quantities.size(), values_.begin());
-  if (inputs_.reference) {
-    for (std::size_t q = 0; q < inputs_.quantities.size(); ++q)
-      if (inputs_.quantities[q] == "height")
-        values_[reference_] = inputs_.reference->at(values_[2 * q + 1]).exner;
-  }
+  fill_derived();
   for (std::size_t f = 0; f < formulas_.size(); ++f)
     values_[names_.size() - formulas_.size() + f] = formulas_[f](values_.data());
   return values_.back();

@@ -12,6 +12,7 @@
 #include "host/parameter_values.hpp"
 #include "pileus/reference_state.hpp"
 #include "planner/rules.hpp"
+#include "planner/saturation_bound.hpp"
 #include "scene/formula.hpp"
 
 namespace pileus::planner {
@@ -21,6 +22,7 @@ struct RuleInputs {
   std::vector<std::string> quantities;                      // "height" and those the parcels carry
   std::vector<std::pair<std::string, double>> parameters;   // of the operator, and `duration`
   std::shared_ptr<const thermo::ReferenceState> reference;  // null: there is no reference_exner
+  std::optional<AirSaturation> saturation;  // nothing: there is no lowest_saturation_humidity
 };
 
 /// Inputs from an operator's parameters; without an operator only `duration`.
@@ -56,9 +58,14 @@ class RuleNumber {
   static constexpr double rounding = 1e-6;  // relative, see schemas/effects.yaml
   double margin() const { return rounding * (threshold_ < 0 ? -threshold_ : threshold_); }
   void find_used();
+  void find_air(const RuleCase& rule_case);
+  void fill_derived();
 
   RuleInputs inputs_;
-  std::size_t input_count_ = 0, reference_ = 0;  // position of reference_exner
+  std::size_t input_count_ = 0;
+  std::size_t reference_ = 0, saturation_ = 0;  // positions of derived names
+  std::size_t height_ = 0, theta_ = 0;          // positions of their lowest values
+  std::size_t epsilon_ = 0;
   std::vector<std::string> names_;
   std::vector<double> values_;
   std::vector<scene::Formula> formulas_;  // each fills the next name

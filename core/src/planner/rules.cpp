@@ -39,15 +39,20 @@ class RuleReader {
         rule.always = toggle(e);
       } else if (e.key == "keeps_extrema") {
         rule.keeps_extrema = toggle(e);
+      } else if (e.key == "keeps_extrema_unless") {
+        rule.keeps_extrema = true;
+        rule.spreads = texts(e);
       } else if (e.key == "requires") {
         rule.needs = texts(e);
+      } else if (e.key == "fed_by") {
+        rule.fed_by = texts(e);
       } else if (e.key == "shown_by") {
         rule.shown_by = texts(e);
       } else if (e.key == "cases") {
         for (const Node& item : e.value.items) rule.cases.push_back(one_case(item));
       } else {
-        unknown(e, {"title", "loss", "source", "always", "keeps_extrema", "requires", "shown_by",
-                    "cases"});
+        unknown(e, {"title", "loss", "source", "always", "keeps_extrema", "keeps_extrema_unless",
+                    "requires", "fed_by", "shown_by", "cases"});
       }
     }
     if (rule.title.empty()) problems_.add(rule.where, "the rule has no 'title'");
@@ -77,6 +82,8 @@ class RuleReader {
       found.carried = texts(e);
     } else if (e.key == "absent") {
       found.absent = texts(e);
+    } else if (e.key == "potential_temperature") {
+      found.potential_temperature = text(e);
     } else if (e.key == "verdict") {
       found.always_off = choice(e, {"off"}) == 0;
     } else if (e.key == "evidence") {
@@ -96,8 +103,8 @@ class RuleReader {
     } else if (e.key == "says") {
       found.says = text(e);
     } else {
-      unknown(e, {"when", "carried", "absent", "verdict", "evidence", "let", "number", "threshold",
-                  "quantity", "says"});
+      unknown(e, {"when", "carried", "absent", "potential_temperature", "verdict", "evidence",
+                  "let", "number", "threshold", "quantity", "says"});
     }
   }
 
@@ -160,6 +167,17 @@ const Rule* Rules::find(std::string_view effect) const {
   const auto found =
       std::find_if(list.begin(), list.end(), [&](const Rule& r) { return r.effect == effect; });
   return found == list.end() ? nullptr : &*found;
+}
+
+bool Rules::follows(std::string_view effect, std::string_view other) const {
+  const Rule* rule = find(effect);
+  if (rule == nullptr) return false;
+  const auto leads_back = [&](const std::string& name) {
+    const Rule* before = find(name);  // rules stand after those they name, which ends the search
+    return name == other || (before != nullptr && before < rule && follows(name, other));
+  };
+  return std::any_of(rule->needs.begin(), rule->needs.end(), leads_back) ||
+         std::any_of(rule->fed_by.begin(), rule->fed_by.end(), leads_back);
 }
 
 Rules read_rules(const std::string& file, std::string_view text) {

@@ -26,6 +26,7 @@ struct RuleFormula {
 struct RuleCase {
   std::string when;                          // on an operator's parameters; empty: always
   std::vector<std::string> carried, absent;  // quantities of the parcels
+  std::string potential_temperature;         // the one lowest_saturation_humidity is for
   bool always_off = false;                   // decides without a number
   Evidence evidence = Evidence::estimate;
   std::vector<RuleFormula> let;
@@ -40,6 +41,8 @@ struct Rule {
   std::string effect, title, loss, source;
   bool always = false, keeps_extrema = false;
   std::vector<std::string> needs;     // effects it requires
+  std::vector<std::string> fed_by;    // effects that alone bring about what it acts on
+  std::vector<std::string> spreads;   // parameters that, unless zero, end `keeps_extrema`
   std::vector<std::string> shown_by;  // diagnostics
   std::vector<RuleCase> cases;
   scene::Location where;
@@ -48,6 +51,8 @@ struct Rule {
 struct Rules {
   std::vector<Rule> list;
   const Rule* find(std::string_view effect) const;
+  /// Whether `effect` requires `other` or is fed by it, at once or through others.
+  bool follows(std::string_view effect, std::string_view other) const;
 };
 
 /// Reads rules from YAML text; `file` names it in messages.

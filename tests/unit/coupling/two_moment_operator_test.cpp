@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "coupling/operator_sequence.hpp"
 #include "pileus/thermo.hpp"
@@ -12,6 +13,7 @@ namespace pileus::coupling {
 namespace {
 
 using Settings = std::vector<std::pair<std::string, scene::RawValue>>;
+using Verdicts = std::map<std::string, EffectState>;  // of effects that are not on
 
 scene::RawValue one(const char* text) {
   return {text, false, {}, {}, {}};
@@ -29,8 +31,8 @@ struct Layer {
   std::uint64_t steps = 0;
 
   explicit Layer(const Settings& settings, std::size_t count = 3000, bool skip = true,
-                 int substeps = 0)
-      : sequence(make(settings, skip, substeps)), store(3, sequence.required_scalars()) {
+                 int substeps = 0, const Verdicts& verdicts = {})
+      : sequence(make(settings, skip, substeps, verdicts)), store(3, sequence.required_scalars()) {
     store.resize(count);
     for (std::size_t p = 0; p < count; ++p) {
       store.uid()[p] = p + 1;
@@ -55,7 +57,8 @@ struct Layer {
   }
 
  private:
-  static OperatorSequence make(const Settings& settings, bool skip, int substeps) {
+  static OperatorSequence make(const Settings& settings, bool skip, int substeps,
+                               const Verdicts& verdicts) {
     scene::Scene scene;
     scene::OperatorBlock block;
     block.use = "org.pileus.two_moment";
@@ -69,6 +72,10 @@ struct Layer {
     auto entries = load_operators(scene, {{PILEUS_BINARY_DIR "/lib/pileus/plugins"}}, problems);
     EXPECT_TRUE(problems.empty()) << problems.render();
     entries.front().substeps = substeps;
+    for (const pileus_effect& effect : entries.front().table->effects) {
+      const auto found = verdicts.find(effect.name);
+      entries.front().effects.push_back(found != verdicts.end() ? found->second : EffectState::on);
+    }
     return OperatorSequence(std::move(entries), std::move(options));
   }
 };
@@ -175,6 +182,85 @@ TEST(TwoMomentOperator, gives_every_cloud_the_number_of_a_constant_spectrum) {
     EXPECT_NEAR(layer.values(droplets_name)[p], 1e8, 1e-3);
   }
   EXPECT_GT(clouds, 500);
+}
+
+const Verdicts nothing_condenses = {{"condensation", EffectState::off},
+                                    {"activation", EffectState::off},
+                                    {"collection", EffectState::off},
+                                    {"rain_evaporation", EffectState::off}};
+
+// In a layer that stays below saturation: half of it never gets there, and 8 m are no ascent.
+TEST(TwoMomentOperator, without_condensation_has_no_arrays_and_no_calls_and_the_same_air) {
+  const Settings with_rain = {{"collection", one("seifert_beheng")}};
+  for (const bool skip : {true, false}) {
+    Layer off(with_rain, 3000, skip, 0, nothing_condenses), on(with_rain);
+    for (Layer* layer : {&off, &on}) {
+      for (std::size_t p = 0; p < 3000; ++p) layer->values(vapour_name)[p] = 2e-3;
+      layer->sequence.population_changed();
+      for (int i = 0; i < 5; ++i) layer->rise(8, 2);
+      layer->sequence.diagnose({5, 0, 2});
+    }
+    for (const char* name :
+         {cloud_name, droplets_name, "mass_fraction_of_rain_in_air",
+          "number_of_raindrops_per_mass_of_air", "previous_height", "relative_humidity"}) {
+      EXPECT_EQ(off.store.find_scalar(name), -1) << name;
+      EXPECT_GE(on.store.find_scalar(name), 0) << name;
+    }
+    for (const char* name : {theta_name, vapour_name, "air_temperature", "buoyancy"}) {
+      EXPECT_EQ(std::memcmp(off.values(name), on.values(name), 3000 * sizeof(double)), 0) << name;
+    }
+    const OperatorLedger ledger = off.sequence.ledger().operators.front();
+    EXPECT_EQ(ledger.applied, 0u);
+    EXPECT_EQ(ledger.skipped(), 0u) << "nobody was asked";
+    EXPECT_GT(on.sequence.ledger().operators.front().skipped(), 0u);
+  }
+}
+
+TEST(TwoMomentOperator, without_collection_is_the_scheme_without_rain) {
+  const Verdicts no_collection = {{"collection", EffectState::off},
+                                  {"rain_evaporation", EffectState::off}};
+  Layer off({{"collection", one("seifert_beheng")}}, 3000, true, 0, no_collection), never({});
+  EXPECT_EQ(off.store.find_scalar("mass_fraction_of_rain_in_air"), -1);
+  EXPECT_EQ(off.store.find_scalar("number_of_raindrops_per_mass_of_air"), -1);
+  for (int i = 0; i < 20; ++i) {
+    off.rise(15, 3);
+    never.rise(15, 3);
+  }
+  const auto a = bits_of(off), b = bits_of(never);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
+  EXPECT_GT(*std::max_element(off.values(cloud_name), off.values(cloud_name) + 3000), 1e-5);
+}
+
+// Saturation is reached on the way: until then the watched operator is given no water and is not
+// called; what it does from then on is what the other does.
+TEST(TwoMomentOperator, switched_on_before_saturation_equals_the_one_that_was_on) {
+  const Verdicts watch = {{"condensation", EffectState::watched}};
+  Layer watched({{"collection", one("seifert_beheng")}}, 3000, true, 0, watch);
+  Layer on({{"collection", one("seifert_beheng")}});
+  for (Layer* layer : {&watched, &on})
+    for (std::size_t p = 0; p < 3000; ++p) layer->values(vapour_name)[p] = 6e-3;
+  watched.sequence.population_changed();
+  on.sequence.population_changed();
+  const auto wettest = [&] {
+    return *std::max_element(on.values("relative_humidity"), on.values("relative_humidity") + 3000);
+  };
+  int switched_at = 0;
+  for (int i = 0; i < 30; ++i) {
+    on.sequence.diagnose({on.steps, 0, 3});
+    if (switched_at == 0 && wettest() > 0.97) {
+      EXPECT_EQ(watched.sequence.ledger().operators.front().applied, 0u);
+      EXPECT_TRUE(watched.sequence.activate("condensation"));
+      switched_at = i;
+    }
+    watched.rise(10, 3);
+    on.rise(10, 3);
+  }
+  EXPECT_GT(switched_at, 2);
+  const auto a = bits_of(watched), b = bits_of(on);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
+  EXPECT_GT(*std::max_element(on.values(cloud_name), on.values(cloud_name) + 3000), 1e-5);
 }
 
 TEST(TwoMomentOperator, refuses_modes_that_do_not_match) {

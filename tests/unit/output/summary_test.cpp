@@ -31,8 +31,11 @@ Summary sample_summary() {
   s.phases = {{"deposit", 12.5, 0.25, 615}, {"interpolate", 30.5, 0.61, 615}, {"merge", 0, 0, 0}};
   s.diagnostics = {{"total_water", "kg", 1.0 / 3, 1.0 / 3 + 1e-16, 0.3, 0.4, 0.35, 1.5e-16},
                    {"max_liquid_water", "1", 0, NAN, 0, INFINITY, 0.1, {}}};
-  s.effects = {{"condensation", "on", "the scene is moist", 3.25}};
-  s.operators = {{"saturation", 1000000, 250000, 3.25, 2, 1}};
+  const CallSummary calls{1000000, 250000, 3.25, 2, 1, 0.25, 0, 200000, 50000, 0, 0.8125};
+  s.effects = {{"condensation", "on", "the scene is moist", calls},
+               {"collection", "off", "it needs rain", {}}};
+  s.operators = {{"saturation", calls}};
+  s.left_out = {16, 1.5};
   s.budgets = {{"water", "kg", 1, 1.5, 0.5, 1e-17}};
   s.expect = {{"total_water", "relative_change", {}, 1.5e-16, {}, 1e-12, true, "round-off"},
               {"cloud_top", "max", 360.0, 4000, 2500, 3500, false, "published"}};
@@ -140,14 +143,38 @@ TEST(Status, obeys_its_schema) {
 
 TEST(Ledger, shows_phases_operators_conservation_judgement_and_place) {
   const std::string text = print_ledger(sample_summary());
-  for (const char* part : {"moist_thermal: done at 360 s after 123 steps", "262 144 -> 281 002",
-                           "2413 ns", "125.0 MiB", "interpolate", "61.0 %", "saturation", "250 000",
-                           "condensation", "the scene is moist", "total_water", "1.50e-16",
-                           "FAIL  cloud_top max at 360 s = 4000", "bound >= 2500 and <= 3500",
-                           "results in results/moist_thermal", "fields.nc", "(7 records)"})
+  for (const char* part : {"moist_thermal: done at 360 s after 123 steps",
+                           "262 144 -> 281 002",
+                           "2413 ns",
+                           "125.0 MiB",
+                           "interpolate",
+                           "61.0 %",
+                           "saturation",
+                           "250 000",
+                           "condensation",
+                           "on: the scene is moist",
+                           "0.812",
+                           "by block 200 000",
+                           "done without: 16 bytes per parcel (4.1 MiB), 1.5 s",
+                           "total_water",
+                           "1.50e-16",
+                           "FAIL  cloud_top max at 360 s = 4000",
+                           "bound >= 2500 and <= 3500",
+                           "results in results/moist_thermal",
+                           "fields.nc",
+                           "(7 records)"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   EXPECT_LT(text.find("interpolate"), text.find("deposit")) << "the costliest phase comes first";
   EXPECT_EQ(text.find("merge"), std::string::npos) << "phases that never ran are left out";
+}
+
+TEST(Ledger, does_not_price_skipped_parcels_when_none_was_called_for) {
+  Summary summary = sample_summary();
+  summary.operators.front().calls.seconds_saved = not_available;
+  summary.left_out.seconds = not_available;
+  const std::string text = print_ledger(summary);
+  EXPECT_NE(text.find("n/a"), std::string::npos) << text;
+  EXPECT_NE(text.find("--measure"), std::string::npos) << text;
 }
 
 TEST(Ledger, of_a_run_that_did_nothing_is_still_complete) {

@@ -47,6 +47,72 @@ class MoistAir : public Operator<MoistAir> {
   void diagnose(const pileus_step&, Block) const {}
 };
 
+/// Clouds whose drops are carried: what a scheme with rates declares.
+class Clouds : public Operator<Clouds> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.clouds");
+    d.op.form = PILEUS_FLOW;
+    d.choice("temperature", {"prognostic", "reference_profile"});
+    d.choice("collection", {"none", "some"});
+    d.choice("saturation_pressure",
+             {"bolton", "tetens", "magnus", "buck", "murphy_koop", "wexler"});
+    d.number("base_height", "m", 0);
+    d.number("gravity", "m s-2", 9.81);
+    d.number("heat_capacity", "J kg-1 K-1", 1005);
+    d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04);
+    d.number("epsilon", "1", 0.622);
+    d.number("surface_pressure", "Pa", 1e5);
+    d.numbers("reference_height", "m", 0);
+    d.numbers("reference_potential_temperature", "K", 300);
+    d.provides("condensation");
+    d.provides("activation");
+    d.provides("collection", "collection != none");
+    d.updates("air_potential_temperature", "K").intensive();
+    d.updates("specific_humidity", "1").intensive();
+    d.owns("mass_fraction_of_cloud_liquid_water_in_air", "1")
+        .intensive()
+        .when("effect.condensation == on");
+    d.owns("number_of_cloud_droplets_per_mass_of_air", "kg-1")
+        .intensive()
+        .when("effect.condensation == on");
+    for (const char* name : {"mass_fraction_of_rain_in_air", "number_of_raindrops_per_mass_of_air"})
+      d.owns(name, name[0] == 'm' ? "1" : "kg-1")
+          .intensive()
+          .when("collection != none and effect.collection == on");
+  }
+  void apply(const pileus_step&, Block) const {}
+};
+
+/// Lets rain fall that others make.
+class Fall : public Operator<Fall> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.fall");
+    d.op.form = PILEUS_FLOW;
+    d.op.scope = PILEUS_GLOBAL;
+    d.provides("sedimentation");
+    d.updates("mass_fraction_of_rain_in_air", "1").intensive();
+    d.accumulates("rainfall_amount", "kg m-2");
+  }
+  void apply(const pileus_step&, Block) const {}
+};
+
+/// Mixes, by default without a profile.
+class Mixer : public Operator<Mixer> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.mixer");
+    d.op.form = PILEUS_FLOW;
+    d.number("rate", "1", 1);
+    d.numbers("reference_potential_temperature", "K", 0);
+    d.provides("small_scale_mixing");
+    d.updates("air_potential_temperature", "K").intensive();
+    d.updates("specific_humidity", "1").intensive();
+  }
+  void apply(const pileus_step&, Block) const {}
+};
+
 /// Changes total water in a way no rule knows.
 class WaterSource : public Operator<WaterSource> {
  public:
@@ -85,6 +151,22 @@ inline scene::Scene wet_scene(const std::string& more = "") {
                              "  liquid_water_buoyancy: 0\n" +
                                  more,
                              {}, problems);
+  problems.throw_if_any();
+  return scene;
+}
+
+/// A box of 500 m with air of 290 to 291 K and a humidity of 0.004 to 0.005: it saturates at
+/// 0.0096.
+inline scene::Scene humid_scene(const std::string& initial = "", const std::string& more = "") {
+  scene::Problems problems;
+  scene::Scene scene = scene::read_scene_text("humid.yaml",
+                                              "domain: {extent: [1000 m, 500 m], cells: [4, 8]}\n"
+                                              "time: {end: 60 s}\n"
+                                              "initial:\n"
+                                              "  specific_humidity: 0.004 + 1e-3*(z > 300)\n"
+                                              "  air_potential_temperature: 290 + (z > 200)\n" +
+                                                  initial + more,
+                                              {}, problems);
   problems.throw_if_any();
   return scene;
 }

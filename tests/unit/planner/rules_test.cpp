@@ -15,6 +15,7 @@ TEST(Rules, built_in_ones_refer_to_effects_that_come_before) {
   for (const Rule& rule : built_in_rules().list) {
     EXPECT_FALSE(rule.loss.empty()) << rule.effect;
     for (const std::string& need : rule.needs) EXPECT_EQ(before.count(need), 1u) << rule.effect;
+    for (const std::string& feeder : rule.fed_by) EXPECT_EQ(before.count(feeder), 1u) << feeder;
     before.insert(rule.effect);
   }
   EXPECT_EQ(before.count("condensation"), 1u);
