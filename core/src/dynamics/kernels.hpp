@@ -28,7 +28,7 @@ struct StageJob {
   double* position[D];
   double* vorticity[vorticity_components];
   double* shape[shape_components];
-  const double* volume;
+  const double* size_volume;  // of the ellipsoids
   double* position_increment[D];
   double* vorticity_increment[vorticity_components];
   double* shape_increment[gradient_components];

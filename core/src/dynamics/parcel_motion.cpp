@@ -96,7 +96,7 @@ StageJob<D> ParcelMotion<D>::stage_job(parcels::Store& store, std::size_t s, dou
   for (int c = 0; c < StageJob<D>::shape_components; ++c) whole.shape[c] = store.shape(c);
   for (int c = 0; c < StageJob<D>::gradient_components; ++c)
     whole.shape_increment[c] = shape_increment_[static_cast<std::size_t>(c)].data();
-  whole.volume = store.volume();
+  whole.size_volume = store.size_volume();
   whole.keep = scheme_.a[s];
   whole.advance = evaluate_only ? 0.0 : scheme_.b[s] * dt;
   whole.first = s == 0;

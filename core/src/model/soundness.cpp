@@ -59,16 +59,15 @@ Shapes shapes_between(const parcels::Store& store, std::size_t begin, std::size_
     measure(shape, longest, ratio, 0, count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t p = first + i;
-      const double volume = store.volume()[p];
+      const double volume = store.volume()[p], size = store.size_volume()[p];
       found.smallest = std::min(found.smallest, volume);
       found.largest = std::max(found.largest, volume);
       const std::array<double, 3> minor = minors(store, p);
       if (!(minor[0] > 0 && minor[1] > 0 && minor[2] > 0)) ++found.indefinite;
       found.longest_ratio2 = std::max(found.longest_ratio2, ratio[i]);
       const double determinant = minor[store.dimension() == 2 ? 1 : 2];
-      found.volume_error =
-          std::max(found.volume_error,
-                   std::abs(determinant / determinant_for(volume, store.dimension()) - 1));
+      found.volume_error = std::max(
+          found.volume_error, std::abs(determinant / determinant_for(size, store.dimension()) - 1));
     }
   }
   return found;
@@ -113,7 +112,7 @@ std::vector<std::array<std::string, 3>> Soundness::outputs() {
   return {
       {"indefinite_shapes", "1", "parcels whose shape matrix is not positive definite"},
       {"shape_volume_error", "1",
-       "largest relative error of a shape's determinant for the parcel's volume"},
+       "largest relative error of a shape's determinant for the volume it stands for"},
       {"max_aspect_ratio", "1", "largest ratio of a parcel's longest half-axis to its shortest"},
       {"min_parcel_volume", "1", "smallest parcel volume over the cell volume"},
       {"max_parcel_volume", "1", "largest parcel volume over the cell volume"},

@@ -36,6 +36,16 @@ double scale_to_volume(const double* shape, double volume) {
   }
 }
 
+/// Scales a second moment to the shape of that volume, and returns the volume of the shape. Where
+/// shapes may be larger than the volume, a moment that is stays as it is.
+template <int D>
+double close_moment(double* shape, double volume, bool may_be_larger) {
+  const double scale = scale_to_volume<D>(shape, volume);
+  if (may_be_larger && scale < 1) return volume * std::pow(scale, -0.5 * D);
+  for (int c = 0; c < D * (D + 1) / 2; ++c) shape[c] *= scale;
+  return volume;
+}
+
 /// The largest parcel of a cluster passes its identity on; of equals, the one with the smaller.
 template <class Source>
 std::uint64_t identity_of_merged(const Store& store, const Source* begin, const Source* end) {
@@ -146,7 +156,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   };
   add_moment(r);
   for (const Source* s = begin; s != end; ++s) add_moment(s->source);
-  const double scale = scale_to_volume<D>(shape, total);
+  const double size = close_moment<D>(shape, total, store.carries_size());
 
   const auto merge_mean = [&](double* value) {
     double sum = volume[r] * value[r], low = value[r], high = value[r];
@@ -168,8 +178,9 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   }
   for (int a = 0; a < D; ++a) store.position(a)[r] += centroid[a];
   hold_inside<D>(store, grid_, r);  // across the seam, or rounded beyond a wall
-  for (int c = 0; c < shape_components; ++c) store.shape(c)[r] = scale * shape[c];
+  for (int c = 0; c < shape_components; ++c) store.shape(c)[r] = shape[c];
   store.uid()[r] = identity_of_merged(store, begin, end);
+  store.size_volume()[r] = size;
   store.volume()[r] = total;
 }
 

@@ -25,7 +25,8 @@ class Merge {
   Merge(const mesh::Grid<D>& grid, double smallest_volume);
 
   /// Merges in place: receivers take the volume-weighted means, the centroid and the second moment
-  /// of their cluster, rescaled so that the shape encloses the summed volume (Frey et al. 2023).
+  /// of their cluster, rescaled so that the shape encloses the summed volume (Frey et al. 2023),
+  /// or only ever enlarged where parcels carry a size of their own.
   /// Volume, centroid (up to the periodic wrap) and all volume integrals are conserved to rounding,
   /// and no value leaves the range of its parents. `order` must be sorted for the present
   /// positions. Sources are marked in gone().

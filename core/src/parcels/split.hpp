@@ -17,7 +17,7 @@ template <int D>
 struct SplitCriterion {
   double squared_aspect_ratio;  // of the longest to the shortest axis
   double squared_longest;       // m2, 3D
-  double largest_volume;        // m2, 2D
+  double largest_volume;        // m2, 2D, of the ellipse
 
   static SplitCriterion make(const mesh::Grid<D>& grid, double max_aspect_ratio,
                              double max_volume_ratio);

@@ -23,6 +23,10 @@ Store::Store(int dimension, std::vector<Scalar> scalars)
                                      [](const Scalar& s) { return s.nature == Nature::derived; });
   columns_.resize(static_cast<std::size_t>(first_scalar()) + scalars_.size());
   state_columns_ = column_count() - static_cast<int>(derived);
+  const int size = find_scalar(size_volume_name);
+  const bool carried =
+      size >= 0 && scalars_[static_cast<std::size_t>(size)].nature == Nature::extensive;
+  size_volume_column_ = carried ? first_scalar() + size : dimension_;
   resize(0);
 }
 

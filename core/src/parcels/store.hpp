@@ -30,6 +30,9 @@ struct Scalar {
   double low = 0, high = 0, initial = 0;  // admissible range; value of new parcels
 };
 
+/// The quantity that sets what a parcel spans apart from what it holds, where an operator owns it.
+inline constexpr const char* size_volume_name = "parcel_size_volume";
+
 class Store {
  public:
   /// An empty store for `dimension` (2 or 3) with the given scalars, in that order.
@@ -53,6 +56,9 @@ class Store {
     return column(dimension_ + 1 + vorticity_components() + component);
   }
   double* scalar(int index) { return column(first_scalar() + index); }
+  /// Volume of the ellipsoid that the shape describes: the parcel's own, unless parcels carry one
+  /// of their own for it.
+  double* size_volume() { return column(size_volume_column_); }
   std::uint64_t* uid() { return uid_.data(); }
   const double* position(int axis) const { return column(axis); }
   const double* volume() const { return column(dimension_); }
@@ -61,7 +67,11 @@ class Store {
     return column(dimension_ + 1 + vorticity_components() + component);
   }
   const double* scalar(int index) const { return column(first_scalar() + index); }
+  const double* size_volume() const { return column(size_volume_column_); }
   const std::uint64_t* uid() const { return uid_.data(); }
+
+  /// Whether shapes may be larger than the parcels' volumes.
+  bool carries_size() const { return size_volume_column_ != dimension_; }
 
   const std::vector<Scalar>& scalars() const { return scalars_; }
   /// Index of the named scalar, or −1.
@@ -92,6 +102,7 @@ class Store {
   std::size_t size_ = 0;
   std::vector<Scalar> scalars_;  // intensive and extensive first, then derived
   int state_columns_ = 0;
+  int size_volume_column_;
   std::vector<AlignedArray<double>> columns_;
   AlignedArray<std::uint64_t> uid_;
   std::size_t capacity_ = 0;  // parcels there is room for

@@ -74,7 +74,7 @@ void Upkeep<D>::mark_splits(const Store& store, SupportOffsets<D>& scratch) {
   double* ratio = scratch.scratch(1);
   const double* shape[D == 3 ? 6 : 3];
   for (int c = 0; c < store.shape_components(); ++c) shape[c] = store.shape(c);
-  const double* volume = store.volume();
+  const double* volume = store.size_volume();
   const auto measure = D == 3 ? kernels().axis_ratios_3d : kernels().axis_ratios_2d;
   parallel_chunks(count, [&](std::size_t begin, std::size_t end) {
     measure(shape, length, ratio, begin, end);
@@ -88,6 +88,7 @@ template <int D>
 void Upkeep<D>::mark_splits_in_flat_cells(const Store& store) {
   constexpr int components = D == 3 ? 6 : 3;
   constexpr std::size_t block = 128, read_ahead = 8;
+  const double* volume = store.size_volume();
   const auto measure = D == 3 ? kernels().axis_ratios_3d : kernels().axis_ratios_2d;
   parallel_chunks(store.size(), [&](std::size_t begin, std::size_t end) {
     alignas(64) double mapped[components][block + read_ahead];
@@ -105,7 +106,7 @@ void Upkeep<D>::mark_splits_in_flat_cells(const Store& store) {
         }
       measure(shape, length, ratio, 0, count);
       for (std::size_t p = 0; p < count; ++p)
-        splits_[first + p] = criterion_.splits(length[p], ratio[p], store.volume()[first + p]);
+        splits_[first + p] = criterion_.splits(length[p], ratio[p], volume[first + p]);
     }
   });
 }

@@ -75,7 +75,7 @@ struct Stage {
     for (int c = 0; c < Job::shape_components; ++c) job.shape[c] = store.shape(c);
     for (int c = 0; c < Job::gradient_components; ++c)
       job.shape_increment[c] = increment[D + Job::vorticity_components + c].data();
-    job.volume = store.volume();
+    job.size_volume = store.size_volume();
     job.aspect_limit = 100;
     broken = 0;
     for (std::size_t begin = 0; begin < store.size(); begin += chunk) {

@@ -197,7 +197,7 @@ void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Mat
     b = {b.xx + job.advance * k.xx, b.xy + job.advance * k.xy, b.xz + job.advance * k.xz,
          b.yy + job.advance * k.yy, b.yz + job.advance * k.yz, b.zz + job.advance * k.zz};
   }
-  if (job.last) b = close_shape(b, load(job.volume + p), count, job.aspect_limit, job.broken);
+  if (job.last) b = close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken);
   store(job.shape[0] + p, b.xx);
   store(job.shape[1] + p, b.xy);
   store(job.shape[2] + p, b.xz);
@@ -226,7 +226,7 @@ void advance_shape(StageJob<2>& job, std::size_t p, std::size_t count, const Mat
     if (job.evaluate_only) return;
     b = {b.xx + job.advance * k.xx, b.xz + job.advance * k.xz, b.zz + job.advance * k.zz};
   }
-  if (job.last) b = close_shape(b, load(job.volume + p), count, job.aspect_limit, job.broken);
+  if (job.last) b = close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken);
   store(job.shape[0] + p, b.xx);
   store(job.shape[1] + p, b.xz);
   store(job.shape[2] + p, b.zz);
