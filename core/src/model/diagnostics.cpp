@@ -127,6 +127,8 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
       entries.push_back(add(name, units, text));
   }
   add_gridded_measures(scene, simulation);
+  for (const auto& [name, units, text] : simulation.variance_budget().outputs())
+    variance_entries_.push_back(add(name, units, text));
   for (const scene::HistogramControl& control : scene.diagnostics.histograms) {
     histograms_.emplace_back(control, simulation);
     auto& entries = histogram_entries_.emplace_back();
@@ -240,6 +242,8 @@ void Diagnostics::observe_state(Simulation& simulation) {
     for (std::size_t k = 0; k < found.size(); ++k) set(exact_entries_[i][k], found[k]);
   }
   observe_gridded_measures(simulation);
+  const std::vector<double> variance = simulation.variance_budget().measure(simulation.store());
+  for (std::size_t k = 0; k < variance.size(); ++k) set(variance_entries_[k], variance[k]);
   for (std::size_t i = 0; i < histograms_.size(); ++i) {
     const std::vector<double> found = histograms_[i].measure(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(histogram_entries_[i][k], found[k]);

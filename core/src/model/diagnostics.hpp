@@ -88,6 +88,7 @@ class Diagnostics {
   NodeField field_;
   std::vector<Histogram> histograms_;
   std::vector<std::vector<int>> histogram_entries_;
+  std::vector<int> variance_entries_;
   std::vector<ScalarEntries> scalars_;
   const coupling::SurfaceFields& surface_;
   std::vector<SurfaceEntries> surface_entries_;

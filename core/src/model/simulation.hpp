@@ -14,6 +14,7 @@
 #include "dynamics/parcel_motion.hpp"
 #include "dynamics/time_step.hpp"
 #include "mesh/grid.hpp"
+#include "model/variance_budget.hpp"
 #include "output/checkpoint.hpp"
 #include "output/netcdf_form.hpp"
 #include "parcels/correction.hpp"
@@ -113,6 +114,7 @@ class Simulation {
   std::uint64_t step() const { return step_; }
   double last_dt() const { return dt_; }
   const dynamics::MeanWind& mean_wind() const { return wind_; }
+  const VarianceBudget& variance_budget() const { return *variance_budget_; }
   PhaseTimes& times() { return times_; }
   void set_clock(double time, std::uint64_t step, double dt) {
     time_ = time;
@@ -122,6 +124,7 @@ class Simulation {
 
  protected:
   std::unique_ptr<parcels::Store> store_;
+  std::unique_ptr<VarianceBudget> variance_budget_;
   double time_ = 0, dt_ = 0, until_ = 0;
   std::uint64_t step_ = 0;
   dynamics::MeanWind wind_;

@@ -102,6 +102,8 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
                           scene.parcels.max_compression}) {
   require_countable(grid_, scene.parcels.per_cell);
   store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
+  variance_budget_ = std::make_unique<VarianceBudget>(scene.diagnostics.variance_budgets, *store_,
+                                                      grid_.domain_volume());
   mesh_access_.reset(new MeshAccessOf<D>({grid_, *store_, tile_begin_, transport_, wind_}));
 }
 
@@ -236,6 +238,7 @@ void SimulationOf<D>::save(output::NamedData& data) const {
   data.arrays["mean_wind"] = {wind_.velocity[0], wind_.velocity[1]};
   data.counters["zero_wall_vorticity"] = {zero_wall_vorticity_[0], zero_wall_vorticity_[1]};
   data.counters["broken_shapes"] = {broken_shapes()};
+  variance_budget_->save(data);
   data.counters["tile_begin"].assign(tile_begin_.begin(), tile_begin_.end());
 }
 
@@ -252,6 +255,7 @@ void SimulationOf<D>::restore(const output::NamedData& data) {
                 "The checkpoint belongs to another domain or mesh than the scene describes.");
   tile_begin_.assign(tiles.begin(), tiles.end());
   broken_before_ = data.counters.at("broken_shapes").at(0);
+  variance_budget_->restore(data);
   build_transport({zero.at(0) != 0, zero.at(1) != 0});
 }
 
@@ -300,6 +304,7 @@ template <int D>
 void SimulationOf<D>::begin_step(double until) {
   until_ = until;
   dt_ = until - time_;
+  if (!variance_budget_->started()) account_for_variance(VarianceBudget::Sink::operators);
   bool changed;
   {
     const PhaseScope scope(times_, Phase::operators);
@@ -307,6 +312,13 @@ void SimulationOf<D>::begin_step(double until) {
   }
   if (changed) evaluate();
   transport_->begin_step(*store_, wind_, dt_, times_);
+}
+
+template <int D>
+void SimulationOf<D>::account_for_variance(VarianceBudget::Sink sink) {
+  if (variance_budget_->empty()) return;
+  const PhaseScope scope(times_, Phase::diagnostics);
+  variance_budget_->book(*store_, sink);
 }
 
 template <int D>
@@ -318,7 +330,9 @@ StepReport SimulationOf<D>::finish_step() {
     const PhaseScope scope(times_, Phase::operators);
     buoyancy_.physics.apply_after(*store_, time_, dt_, step_);
   }
+  account_for_variance(VarianceBudget::Sink::operators);
   report.upkeep = upkeep_.run(*store_, transport_->offsets(), step_, times_);
+  account_for_variance(VarianceBudget::Sink::mergers);
   tile_begin_ = upkeep_.tile_begin();
   buoyancy_.physics.population_changed();
   {

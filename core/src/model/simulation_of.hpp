@@ -72,6 +72,7 @@ class SimulationOf final : public Simulation {
   GriddedFields<D> gridded() const;
   void place_parcels(const scene::Scene& scene);
   void require_finite() const;
+  void account_for_variance(VarianceBudget::Sink sink);
   std::vector<double> corners() const;
 
   mesh::Grid<D> grid_;

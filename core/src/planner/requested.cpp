@@ -35,6 +35,7 @@ std::vector<Wanted> wanted_names(const scene::Scene& scene) {
   for (const auto& one : d.fronts) add(one.variable, scene::describe(one.where));
   for (const auto& one : d.mirrors) add(one.variable, scene::describe(one.where));
   for (const auto& one : d.histograms) add(one.variable, scene::describe(one.where));
+  for (const auto& one : d.variance_budgets) add(one.variable, scene::describe(one.where));
   for (const auto& one : scene.expect) add(one.diagnostic, scene::describe(one.where));
   return names;
 }

@@ -178,6 +178,25 @@ const Table& histogram_table() {
   return table;
 }
 
+const Table& variance_budget_table() {
+  static const Table table = {
+      .path = "diagnostics.variance_budgets",
+      .doc =
+          "Carried quantities whose variance over the domain is accounted for; each gives "
+          "<variable>_variance, <variable>_variance_lost_to_operators and "
+          "<variable>_variance_lost_to_mergers.",
+      .keys = {value("variable", &VarianceBudgetControl::variable, "1", "Quantity of the parcels.")
+                   .must()},
+      .other = {},
+      .finish =
+          [](Reader&, const Node& node, void* object) {
+            static_cast<VarianceBudgetControl*>(object)->where = node.where;
+          },
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
 }  // namespace
 
 const Table& water_path_table() {
@@ -237,7 +256,9 @@ const Table& diagnostics_table() {
                sections("modes", &DiagnosticControl::modes, mode_table()),
                sections("fronts", &DiagnosticControl::fronts, front_table()),
                sections("mirrors", &DiagnosticControl::mirrors, mirror_table()),
-               sections("histograms", &DiagnosticControl::histograms, histogram_table())},
+               sections("histograms", &DiagnosticControl::histograms, histogram_table()),
+               sections("variance_budgets", &DiagnosticControl::variance_budgets,
+                        variance_budget_table())},
       .other = {},
       .finish = {},
       .write_other = {},

@@ -256,6 +256,13 @@ struct MirrorControl {
   Location where;
 };
 
+/// A carried quantity whose variance is accounted for. Gives `<variable>_variance`,
+/// `<variable>_variance_lost_to_operators` and `<variable>_variance_lost_to_mergers`.
+struct VarianceBudgetControl {
+  std::string variable;
+  Location where;
+};
+
 /// What the mass of water over an area of the ground is summed over.
 struct WaterPathControl {
   WaterPathControl() {
@@ -274,6 +281,7 @@ struct DiagnosticControl {
   std::vector<FrontControl> fronts;
   std::vector<MirrorControl> mirrors;
   std::vector<HistogramControl> histograms;
+  std::vector<VarianceBudgetControl> variance_budgets;
 };
 
 struct Expectation {
