@@ -18,7 +18,7 @@ template <int D>
 using Square = Eigen::Matrix<double, D, D>;
 
 template <int D>
-Square<D> as_eigen(const stretching::Matrix<D>& a) {
+Square<D> as_eigen(const Matrix<D>& a) {
   return Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>(a.data());
 }
 
@@ -45,6 +45,8 @@ void expect_isotropic_gradient() {
   constexpr int n = 40000;
   constexpr double intensity = 0.1;
   std::array<Mean, D * D * D * D> moments;
+  Mean magnitude;                 // G:G
+  std::array<Mean, D * D> twice;  // G²
   for (int sample = 0; sample < n; ++sample) {
     double normal[D * D];
     draw(static_cast<std::uint64_t>(sample), 0, D * D, normal);
@@ -54,7 +56,16 @@ void expect_isotropic_gradient() {
     EXPECT_NEAR(trace, 0.0, 1e-14);
     for (int a = 0; a < D * D; ++a)
       for (int b = 0; b < D * D; ++b) moments[a * D * D + b].add(g[a] * g[b]);
+    double square = 0;
+    for (const double x : g) square += x * x;
+    magnitude.add(square);
+    const Matrix<D> second = product<D>(g, g);
+    for (std::size_t a = 0; a < D * D; ++a) twice[a].add(second[a]);
   }
+  // ⟨G:G⟩ = D d(d+2)(d−1), 8D in the plane and 30D in space; ⟨G²⟩ = 0, so that the Itô and the
+  // Stratonovich equation of the deformation are the same.
+  EXPECT_NEAR(magnitude.value(), (D == 2 ? 8 : 30) * intensity, 4 * magnitude.error());
+  for (const Mean& m : twice) EXPECT_NEAR(m.value(), 0, 4.5 * m.error());
   for (int a = 0; a < D * D; ++a)
     for (int b = 0; b < D * D; ++b) {
       const int i = a / D, j = a % D, k = b / D, l = b % D;
@@ -72,16 +83,16 @@ TEST(Stretching, GradientIsIsotropicAndIncompressible) {
 TEST(Stretching, ExponentialOfATracelessMatrixHasDeterminantOne) {
   Random random(21);
   for (int n = 0; n < 1000; ++n) {
-    stretching::Matrix<3> a;
+    Matrix<3> a;
     for (double& x : a) x = uniform(random, -2, 2);
     a[8] = -a[0] - a[4];
-    const auto e = stretching::exponential<3>(a), inverse = stretching::exponential<3>([&] {
-                                                    auto minus = a;
-                                                    for (double& x : minus) x = -x;
-                                                    return minus;
-                                                  }());
+    const auto e = exponential<3>(a), inverse = exponential<3>([&] {
+                                        auto minus = a;
+                                        for (double& x : minus) x = -x;
+                                        return minus;
+                                      }());
     const double size = as_eigen<3>(e).norm() * as_eigen<3>(inverse).norm();
-    EXPECT_NEAR(stretching::determinant(e), 1.0, 1e-14 * size * size);
+    EXPECT_NEAR(determinant(e), 1.0, 1e-14 * size * size);
     EXPECT_LT((as_eigen<3>(e) * as_eigen<3>(inverse) - Square<3>::Identity()).norm(), 1e-13 * size);
   }
 }
@@ -98,9 +109,9 @@ void expect_moments() {
   constexpr double intensity = 0.1, dt = 0.02;
   Mean trace, anisotropy;
   for (int sample = 0; sample < n; ++sample) {
-    stretching::Matrix<D> b{};
+    Matrix<D> b{};
     for (int i = 0; i < D; ++i) b[i * D + i] = i == 0 ? 2.0 : 1.0;
-    const double before = stretching::determinant(b);
+    const double before = determinant(b);
     for (int step = 0; step < steps; ++step) {
       double normal[D * D];
       draw(static_cast<std::uint64_t>(sample), static_cast<std::uint64_t>(step), D * D, normal);
@@ -109,7 +120,7 @@ void expect_moments() {
     const Square<D> m = as_eigen<D>(b);
     // The determinant itself is only known to the rounding of its products, each below (tr B)^d.
     const double rounding = 16 * 2.2e-16 * std::pow(m.trace(), D) / before;
-    EXPECT_NEAR(stretching::determinant(b) / before, 1.0, 2e-12 + rounding);
+    EXPECT_NEAR(determinant(b) / before, 1.0, 2e-12 + rounding);
     trace.add(m.trace());
     anisotropy.add(m(0, 0) - m(1, 1));
     EXPECT_EQ(m.llt().info(), Eigen::Success);
@@ -140,7 +151,7 @@ void expect_lyapunov_exponents() {
       draw(static_cast<std::uint64_t>(sample), static_cast<std::uint64_t>(step), D * D, normal);
       auto g = stretching::random_gradient<D>(intensity, normal);
       for (double& x : g) x *= std::sqrt(dt);
-      const Eigen::HouseholderQR<Square<D>> qr(as_eigen<D>(stretching::exponential<D>(g)) * q);
+      const Eigen::HouseholderQR<Square<D>> qr(as_eigen<D>(exponential<D>(g)) * q);
       q = qr.householderQ();
       for (int i = 0; i < D; ++i) logarithm[i] += std::log(std::abs(qr.matrixQR()(i, i)));
     }
@@ -161,7 +172,7 @@ TEST(Stretching, DoesNotDependOnTheTimeStep) {
   const auto mean_trace = [](int steps) {
     Mean trace;
     for (int sample = 0; sample < 20000; ++sample) {
-      stretching::Matrix<2> b{1, 0, 0, 1};
+      Matrix<2> b{1, 0, 0, 1};
       for (int step = 0; step < steps; ++step) {
         double normal[4];
         draw(static_cast<std::uint64_t>(sample), static_cast<std::uint64_t>(step), 4, normal);
