@@ -32,7 +32,8 @@ class Conservation(ProgramTest):
             self.assert_never_widened(ended, quantity)
 
     def test_mixing(self):
-        """Nudging, exchange, displaced and stretched parcels: amounts and extrema as without."""
+        """Nudging, exchange, displaced, stretched and growing parcels: amounts and extrema as
+        without, and the variance that has gone is what operators and mergers took."""
         ended = self.run_well(MIXING_THERMAL, values=COARSE_THERMAL)
         self.assertNotEqual(ended.summary["parcels"]["initial"], ended.summary["parcels"]["final"])
         for name in ("volume", "total_water", *(f"mean_{quantity}" for quantity in CARRIED)):
@@ -41,6 +42,13 @@ class Conservation(ProgramTest):
             low, high = ended.diagnostic(f"min_{quantity}"), ended.diagnostic(f"max_{quantity}")
             self.assertGreaterEqual(low["min"], low["initial"], quantity)
             self.assertLessEqual(high["max"], high["initial"], quantity)
+        variance, operators, mergers = (
+            ended.diagnostic(f"total_water_mass_fraction_variance{part}")
+            for part in ("", "_lost_to_operators", "_lost_to_mergers"))
+        lost = operators["final"] + mergers["final"]
+        self.assertAlmostEqual((variance["initial"] - variance["final"]) / lost, 1, delta=1e-9)
+        self.assertGreater(operators["final"], 0)
+        self.assertGreater(mergers["final"], 0)
 
     def test_wave(self):
         ended = self.run_well(WAVE, values={"domain.cells": "[16, 16, 4]"})

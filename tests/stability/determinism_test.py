@@ -1,5 +1,5 @@
 """The same bits for any number of threads, and for every instruction set in itself."""
-from program import MIXING_THERMAL, NUDGED_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
+from program import CONFIGS, MIXING_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
 from records import differences, parcel_records
 
 # Coarse, and long enough for what can depend on threads to happen: the thermal splits and merges.
@@ -60,8 +60,12 @@ class Determinism(ProgramTest):
             return self.run_on(scene, values | more, 2).summary["state_sha256"]
 
         without = state(THERMAL)
-        self.assertEqual(state(NUDGED_THERMAL, **{"operators.mixing.beta": 0}), without)
-        self.assertNotEqual(state(NUDGED_THERMAL), without)
+        for variant, strength in (("nudged", "mixing.beta"), ("overlap", "exchange.rate"),
+                                  ("stretched", "stretching.coefficient"),
+                                  ("coherent", "displacement.smagorinsky")):
+            scene = CONFIGS / "moist_thermal" / f"moist_thermal_{variant}.yaml"
+            self.assertEqual(state(scene, **{f"operators.{strength}": 0}), without, variant)
+            self.assertNotEqual(state(scene), without, variant)
 
     def test_fields_of_formulas_on_many_threads(self):
         """Parsers of formulas share what they are made from: threads used to corrupt it at times."""

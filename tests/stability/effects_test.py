@@ -158,6 +158,23 @@ class EffectsProgramTest(ProgramTest):
                          [one["name"] for one in stored])
         self.assertGreater(off.summary["watch"]["checks"], 0)
 
+    def test_mixing_keeps_nothing_but_what_it_must(self):
+        """Bytes per parcel: an exchange, a displacement and a stretching keep nothing; Langevin
+        velocities are three numbers and a weight, the size of a grown parcel is one."""
+        thermal = CONFIGS / "moist_thermal"
+
+        def stored(variant, *settings):
+            plan = plan_of(thermal / f"moist_thermal{variant}.yaml", *settings)
+            return plan["data_flow"]["bytes_per_parcel"]
+
+        without = stored("")
+        for variant in ("_nudged", "_overlap", "_stretched", "_coherent"):
+            self.assertEqual(stored(variant), without, variant)
+        self.assertEqual(stored("_langevin", "--set", "operators.displacement.model=brownian"),
+                         without)
+        self.assertEqual(stored("_langevin"), without + 4 * 8)
+        self.assertEqual(stored("_diluted"), without + 8)
+
     def test_watched_condensation_switches_on_and_equals_the_run_that_had_it(self):
         on = self.run_well(BUBBLE, out="on", values=MOIST | {"effects.condensation": "on"})
         watched = self.run_well(BUBBLE, out="watched",
