@@ -1,47 +1,47 @@
 # docs/images/mixing.{svg,png} from docs/figures/mixing_density.dat, which docs/figures/mixing.py
 # writes. From the root of the source tree: gnuplot docs/figures/mixing.gp
-# With schemes = 0 only grid nudging is drawn.
 data = "docs/figures/mixing_density.dat"
 published = "< grep '^[0-9]' configs/scenes/moist_thermal/liquid_water_histograms.csv | tr , ' '"
-if (!exists("schemes")) schemes = 1
-height = schemes ? 760 : 420
+# Columns of runs that were made; made = "2 3" draws those alone.
+if (!exists("made")) made = "2 3 4 5 6 7 8 9 10 11 12 13"
+fine = "2 3 4 5 6 7"
+fine_name = "'β = 0' 0.1 0.3 1 3 'growth and dilution'"
+fine_colour = "#08306b #2171b5 #41ab5d #f16913 #a50f15 #d6a100"
+coarse = "8 9 10 11 12 13"
+coarse_name = "none 'Langevin displacement' 'coherent displacement' 'stochastic stretching' \
+'growth and dilution' 'overlap exchange'"
+coarse_colour = "#08306b #41ab5d #8c6bb1 #f16913 #d6a100 #a50f15"
+is_made(c) = strstrt(" ".made." ", " ".c." ") > 0
+value_of(c) = is_made(c) ? column(int(c)) : NaN
+name_of(c, text) = is_made(c) ? text : ""
 set datafile missing "?"
 set style data steps
 do for [format in "svg png"] {
   if (format eq "svg") {
-    set terminal svg size 900,height font "sans,13" background "white"
+    set terminal svg size 900,760 font "sans,13" background "white"
   } else {
-    set terminal pngcairo size 900,height font "sans,11"
+    set terminal pngcairo size 900,760 font "sans,11"
   }
   set output sprintf("docs/images/mixing.%s", format)
-  if (schemes) {
-    set multiplot layout 2,1 margins 0.09,0.98,0.08,0.95 spacing 0,0.11
-  } else {
-    set multiplot layout 1,1 margins 0.09,0.98,0.14,0.91
-  }
+  set multiplot layout 2,1 margins 0.09,0.98,0.08,0.95 spacing 0,0.11
   set xrange [0.002:0.08]
   set yrange [0:1.6]
   set key at graph 0.5, 0.97 right top
   set ylabel "density"
-  set xlabel "q_l / q_0"
-  set title "Grid nudging: liquid water after 600 s, 32^3 cells"
-  plot data using 1:2 title "β = 0" lw 2 lc rgb "#08306b", \
-       data using 1:3 title "0.1" lw 2 lc rgb "#2171b5", \
-       data using 1:4 title "0.3" lw 2 lc rgb "#41ab5d", \
-       data using 1:5 title "1" lw 2 lc rgb "#f16913", \
-       data using 1:6 title "3" lw 2 lc rgb "#a50f15", \
+  unset xlabel
+  set title "Grid nudging, growth and dilution: liquid water after 600 s, 32^3 cells"
+  plot for [i=1:words(fine)] data using 1:(value_of(word(fine, i))) \
+         title name_of(word(fine, i), word(fine_name, i)) lw 2 lc rgb word(fine_colour, i), \
        published using (0.5*($1+$2)):3 title "EPIC 32^3" dt 2 lw 1.5 lc rgb "black", \
        published using (0.5*($1+$2)):11 title "MONC 32^3" dt 3 lw 1.5 lc rgb "black", \
        published using (0.5*($1+$2)):14 title "MONC 256^3" dt 3 lw 1.5 lc rgb "gray50"
-  if (schemes) {
-    set title "Other schemes with their defaults"
-    plot data using 1:2 title "none" lw 2 lc rgb "#08306b", \
-         data using 1:7 title "Langevin displacement" lw 2 lc rgb "#41ab5d", \
-         data using 1:8 title "stochastic stretching" lw 2 lc rgb "#f16913", \
-         data using 1:9 title "overlap exchange" lw 2 lc rgb "#a50f15", \
-         published using (0.5*($1+$2)):3 title "EPIC 32^3" dt 2 lw 1.5 lc rgb "black", \
-         published using (0.5*($1+$2)):11 title "MONC 32^3" dt 3 lw 1.5 lc rgb "black"
-  }
+  set xlabel "q_l / q_0"
+  set title "Schemes with their defaults, 20^3 cells"
+  plot for [i=1:words(coarse)] data using 1:(value_of(word(coarse, i))) \
+         title name_of(word(coarse, i), word(coarse_name, i)) lw 2 lc rgb word(coarse_colour, i), \
+       published using (0.5*($1+$2)):3 title "EPIC 32^3" dt 2 lw 1.5 lc rgb "black", \
+       published using (0.5*($1+$2)):11 title "MONC 32^3" dt 3 lw 1.5 lc rgb "black", \
+       published using (0.5*($1+$2)):14 title "MONC 256^3" dt 3 lw 1.5 lc rgb "gray50"
   unset multiplot
   unset output
 }

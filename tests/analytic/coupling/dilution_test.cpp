@@ -18,15 +18,15 @@ constexpr const char* dilution = "org.pileus.dilution";
 // ---- the law ---------------------------------------------------------------------------------
 
 /// dV_t/dt = c|S| V_c^{2/9} V_t^{7/9} in space, (2/3) c|S| A_c^{1/3} A_t^{2/3} in the plane, by the
-/// classical Runge–Kutta scheme. Its error is far below 1e-10 in 1000 steps.
+/// classical Runge–Kutta scheme. Its error is far below 1e-10 in 200 steps.
 template <int D>
 double integrated(double size, double cell, double rate, double strain, double end) {
   const auto growth = [&](double v) {
     return D == 3 ? rate * strain * std::pow(cell, 2.0 / 9) * std::pow(v, 7.0 / 9)
                   : 2.0 / 3 * rate * strain * std::cbrt(cell) * std::pow(v, 2.0 / 3);
   };
-  const double dt = end / 1000;
-  for (int step = 0; step < 1000; ++step) {
+  const double dt = end / 200;
+  for (int step = 0; step < 200; ++step) {
     const double k1 = growth(size), k2 = growth(size + 0.5 * dt * k1),
                  k3 = growth(size + 0.5 * dt * k2), k4 = growth(size + dt * k3);
     size += dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
@@ -93,7 +93,7 @@ template <int D>
 void expect_growth(const mesh::Grid<D>& grid) {
   MeshRun<D> run(grid, dilution, {{"rate", "2"}}, {"passive_tracer"},
                  [](std::string_view, std::size_t) { return 0.25; });
-  run.fill(6000, 2, 51);
+  run.fill(1000, 2, 51);
   run.bind();
   const parcels::Store& store = run.store;
   ASSERT_TRUE(store.carries_size());
