@@ -162,10 +162,16 @@ class CoherentDisplacement : public Operator<CoherentDisplacement> {
     parallel_for(block.count(), [&](std::int64_t p) {
       double x[D], middle[D];
       for (int d = 0; d < D; ++d) x[d] = position[d][p];
-      follow<D>(flow, x, middle);
-      x[D - 1] = std::clamp(x[D - 1], bottom, top);
+      const int pieces = pieces_for<D>(flow.gradient(x));
+      for (int piece = 0; piece < pieces; ++piece) {
+        follow<D>(flow, 1.0 / pieces, x, middle);
+        x[D - 1] = inside(x[D - 1], bottom, top);
+        if (!deform) continue;
+        Matrix<D> stretch = flow.gradient(middle);
+        for (double& v : stretch) v /= pieces;
+        deform_shape<D>(exponential<D>(stretch), shape.data(), p);
+      }
       for (int d = 0; d < D; ++d) position[d][p] = x[d];
-      if (deform) deform_shape<D>(exponential<D>(flow.gradient(middle)), shape.data(), p);
     });
   }
 

@@ -165,10 +165,15 @@ std::string scene_fingerprint(const std::string& path, const std::vector<std::st
   for (const std::string& setting : settings) scene::apply_override(root, setting, problems);
   problems.throw_if_any();
   remove_keys(root, {"expect", "output"});
-  if (scene::Entry* identity = root.find("scene")) {
-    remove_keys(identity->value, {"name", "title", "description"});
-    if (identity->value.entries.empty()) remove_keys(root, {"scene"});
-  }
+  const auto remove_inside = [&](std::string_view section,
+                                 std::initializer_list<std::string_view> names) {
+    scene::Entry* entry = root.find(section);
+    if (entry == nullptr) return;
+    remove_keys(entry->value, names);
+    if (entry->value.entries.empty()) remove_keys(root, {section});
+  };
+  remove_inside("scene", {"name", "title", "description"});
+  remove_inside("diagnostics", {"variance_budgets"});  // only adds to what is measured
   return sha256_hex(scene::flow_text(root));
 }
 

@@ -9,6 +9,7 @@
 
 #include "../../../plugins/coherent_displacement/random_flow.hpp"
 #include "../../unit/coupling/sampled_mesh.hpp"
+#include "base/aligned_array.hpp"
 
 namespace pileus::testing {
 namespace {
@@ -108,7 +109,7 @@ void expect_consistent_deformation() {
       x[d] = uniform(random, grid.lower[d] + 0.2, grid.lower[d] + grid.extent[d] - 0.2);
     double centre[D];
     std::copy_n(x, D, centre);
-    coherent::follow<D>(flow, centre, middle);
+    coherent::follow<D>(flow, 1, centre, middle);
     // The gradient is piecewise constant across the middles of cells: paths inside one piece.
     bool inside = true;
     for (int d = 0; d < D; ++d) {
@@ -127,7 +128,7 @@ void expect_consistent_deformation() {
       double low[D], high[D];
       std::copy_n(x, D, low), std::copy_n(x, D, high);
       low[j] -= h, high[j] += h;
-      coherent::follow<D>(flow, low, nullptr), coherent::follow<D>(flow, high, nullptr);
+      coherent::follow<D>(flow, 1, low, nullptr), coherent::follow<D>(flow, 1, high, nullptr);
       for (int i = 0; i < D; ++i)
         EXPECT_NEAR((high[i] - low[i]) / (2 * h), e[i * D + j], 2e-3) << sample;
     }
@@ -205,7 +206,7 @@ double volume_error_after(const char* plugin, const Settings& settings) {
   run.bind();
   run.step(1);
   run.mesh.reorder();
-  std::vector<double> field(grid.nodes() * 4);
+  AlignedArray<double> field(grid.nodes() * 4);
   run.mesh.deposit({}, field.data());
   double sum = 0;
   for (std::size_t c = 0; c < grid.columns(); ++c)

@@ -65,7 +65,8 @@ std::size_t merge_pair(Store& store) {
   const mesh::Grid<D> grid = wide_grid<D>();
   const Tiling<D> tiling(grid);
   CellOrder<D> order(grid, tiling);
-  order.sort(store);
+  std::vector<std::uint32_t> keys;
+  order.sort(store, keys);
   Merge<D> merge(grid, 1e3);
   EXPECT_EQ(merge.run(store, order).merged, 1u);
   return merge.gone()[0] ? 1 : 0;
