@@ -1,6 +1,7 @@
 #include "dynamics/parcel_motion.hpp"
 
 #include "base/parallel.hpp"
+#include "mesh/node_heights.hpp"
 #include "parcels/margin.hpp"
 
 namespace pileus::dynamics {
@@ -61,14 +62,17 @@ void ParcelMotion<D>::deposit_state(parcels::Store& store, const double* buoyanc
     });
     buoyancy = perturbation_.data();
   }
+  static_assert(mesh::mean_height<D> == mesh::DepositRecord<D>::buoyancy + 1);
   std::vector<const double*>& values = deposit_values_;
   values.clear();
   for (int c = 0; c < store.vorticity_components(); ++c) values.push_back(store.vorticity(c));
   values.push_back(buoyancy);
+  values.push_back(store.position(D - 1));
   parcels::LinearReference reference;
   if (!reference_.is_zero() && reference_.is_linear())
     reference = {store.vorticity_components(), reference_.intercept(), reference_.slope()};
   empty_nodes_ = deposit_.means(store, tile_begin, values, reference, deposited_.data());
+  mesh::refer_buoyancy_to_nodes(grid_, deposited_.data());
 }
 
 template <int D>
