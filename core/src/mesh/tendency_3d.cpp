@@ -98,13 +98,13 @@ void Tendency3D::flux_columns(const double* deposit, const double* flow, double*
     const double eta = r[Flow::u_z] - r[Flow::w_x] + f_y;
     const double zeta = r[Flow::v_x] - r[Flow::u_y] + f_z;
     x_flux[k] = xi * r[Flow::u];
-    x_flux[levels + k] = xi * r[Flow::v] - b;
-    x_flux[2 * levels + k] = xi * r[Flow::w];
-    y_flux[k] = eta * r[Flow::u] + b;
+    x_flux[levels + k] = (r[Flow::w_y] + f_x) * r[Flow::v] - b;
+    x_flux[2 * levels + k] = (f_x - r[Flow::v_z]) * r[Flow::w];
+    y_flux[k] = (f_y - r[Flow::w_x]) * r[Flow::u] + b;
     y_flux[levels + k] = eta * r[Flow::v];
-    y_flux[2 * levels + k] = eta * r[Flow::w];
-    z_flux[std::size_t(k)] = zeta * r[Flow::u];
-    z_flux[pitch + std::size_t(k)] = zeta * r[Flow::v];
+    y_flux[2 * levels + k] = (r[Flow::u_z] + f_y) * r[Flow::w];
+    z_flux[std::size_t(k)] = (r[Flow::v_x] + f_z) * r[Flow::u];
+    z_flux[pitch + std::size_t(k)] = (f_z - r[Flow::u_y]) * r[Flow::v];
     z_flux[2 * pitch + std::size_t(k)] = zeta * r[Flow::w];
   }
   if (levels > grid_.nz() + 1)

@@ -8,10 +8,14 @@
 namespace pileus::mesh {
 
 /// Material tendency of the vorticity on the nodes (ω·∇u + f·∇u plus the curl of the buoyancy,
-/// rewritten with ∇·ω = ∇·f = 0): Dω_i/Dt = ∇·((ω + f) u_i) + buoyancy terms, that is
-///   Dξ/Dt = ∂x[(ξ+f_x)u]     + ∂y[(η+f_y)u + b] + ∂z[(ζ+f_z)u]
-///   Dη/Dt = ∂x[(ξ+f_x)v − b] + ∂y[(η+f_y)v]     + ∂z[(ζ+f_z)v]
-///   Dζ/Dt = ∂x[(ξ+f_x)w]     + ∂y[(η+f_y)w]     + ∂z[(ζ+f_z)w].
+/// rewritten with ∇·ω = ∇·f = 0): Dω_i/Dt = ∇·[(ω + f) u_i − ½∇×(u_i² e_i)] + buoyancy terms, where
+/// the curl, e_i the unit vector, takes from the flux what cancels in its divergence. That is
+///   Dξ/Dt = ∂x[(ξ+f_x)u]       + ∂y[(f_y−w_x)u + b] + ∂z[(v_x+f_z)u]
+///   Dη/Dt = ∂x[(w_y+f_x)v − b] + ∂y[(η+f_y)v]       + ∂z[(f_z−u_y)v]
+///   Dζ/Dt = ∂x[(f_x−v_z)w]     + ∂y[(u_z+f_y)w]     + ∂z[(ζ+f_z)w].
+/// On the mesh, where products of short waves alias, it would not cancel: ∂x(w w_y) − ∂y(w w_x) is
+/// of the order of w²/Δ² for updraughts as narrow as a cell. In cells many times as high as wide,
+/// where the tilting u_z w_y − v_z w_x is small, updraughts would turn about their own axes.
 ///
 /// Horizontal derivatives are spectral, so that their sum over a level vanishes to round-off; the
 /// vertical one is FlowOptions::vertical_derivative. Weighted over the levels with that
