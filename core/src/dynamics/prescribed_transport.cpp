@@ -112,7 +112,7 @@ const mesh::FlowSummary& PrescribedTransport<D>::evaluate(
   is_deposited_ = false;
   time_ = time;
   const PhaseScope scope(times, Phase::interpolate);
-  if (!nodes_are_sampled_ || !velocity_->steady()) sample_nodes(time);
+  if (!nodes_are_sampled_ || !velocity_->steady()) summary_ = sample_nodes(time, true);
   nodes_are_sampled_ = true;
   return summary_;
 }
@@ -125,21 +125,32 @@ const double* PrescribedTransport<D>::deposited() {
 }
 
 template <int D>
-void PrescribedTransport<D>::sample_nodes(double time) {
+const mesh::FlowSummary* PrescribedTransport<D>::summary_at(double time, PhaseTimes& times) {
+  if (velocity_->steady()) return nullptr;
+  const PhaseScope scope(times, Phase::interpolate);
+  ahead_ = sample_nodes(time, false);
+  return &ahead_;
+}
+
+/// Samples the flow at the nodes; only where it is to be kept it becomes that of flow().
+template <int D>
+mesh::FlowSummary PrescribedTransport<D>::sample_nodes(double time, bool keep) {
   parallel_chunks(
       grid_.columns(),
       [&](std::size_t begin, std::size_t end) {
         Scratch& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
         for (std::size_t column = begin; column < end; ++column)
-          sample_column(time, column, scratch);
+          sample_column(time, column, keep, scratch);
       },
       16);
-  summary_ = {};
-  for (const mesh::FlowSummary& column : column_summary_) mesh::merge_extrema(summary_, column);
+  mesh::FlowSummary summary;
+  for (const mesh::FlowSummary& column : column_summary_) mesh::merge_extrema(summary, column);
+  return summary;
 }
 
 template <int D>
-void PrescribedTransport<D>::sample_column(double time, std::size_t column, Scratch& scratch) {
+void PrescribedTransport<D>::sample_column(double time, std::size_t column, bool keep,
+                                           Scratch& scratch) {
   const auto levels = static_cast<std::size_t>(grid_.nz() + 1);
   const std::size_t nx = static_cast<std::size_t>(grid_.nx());
   const std::size_t index[2] = {column % nx, column / nx};
@@ -152,7 +163,7 @@ void PrescribedTransport<D>::sample_column(double time, std::size_t column, Scra
   std::copy(scratch.position.begin(), scratch.position.end(), at.begin());
   velocity_->sample(time, levels, at, scratch.samples);
   constexpr auto slots = gradient_slots<D>();
-  for (std::size_t k = 0; k < levels; ++k) {
+  for (std::size_t k = 0; keep && k < levels; ++k) {
     double* record =
         flow_.data() + grid_.node(column, static_cast<int>(k)) * mesh::FlowRecord<D>::width;
     for (std::size_t d = 0; d < D; ++d) record[d] = scratch.samples.velocity[d][k];

@@ -25,6 +25,8 @@ class PrescribedTransport final : public ParcelMotion<D> {
   /// The flow does not depend on the parcels: flow() stays that of the last evaluate().
   void evaluate_velocity(const parcels::Store&, const std::vector<std::size_t>&, const MeanWind&,
                          PhaseTimes&) override {}
+  /// Extrema of the flow at another time; null where it does not change. Valid until the next call.
+  const mesh::FlowSummary* summary_at(double time, PhaseTimes& times);
   void begin_step(parcels::Store& store, MeanWind& wind, double dt, PhaseTimes& times) override;
   void finish_step(parcels::Store& store, BuoyancySource& source,
                    const std::vector<std::size_t>& tile_begin, MeanWind& wind, double time,
@@ -53,12 +55,13 @@ class PrescribedTransport final : public ParcelMotion<D> {
   void match_threads();
   void stage(parcels::Store& store, std::size_t s, double time, double dt, bool evaluate_only,
              PhaseTimes& times);
-  void sample_nodes(double time);
-  void sample_column(double time, std::size_t column, Scratch& scratch);
+  mesh::FlowSummary sample_nodes(double time, bool keep);
+  void sample_column(double time, std::size_t column, bool keep, Scratch& scratch);
 
   std::unique_ptr<VelocityField<D>> velocity_;
   std::vector<Scratch> scratch_;  // per thread
   std::vector<mesh::FlowSummary> column_summary_;
+  mesh::FlowSummary ahead_;  // of summary_at()
   bool nodes_are_sampled_ = false;
   double time_ = 0;  // of evaluate()
   parcels::Store* store_ = nullptr;

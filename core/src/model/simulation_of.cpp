@@ -10,6 +10,7 @@
 #include "base/log.hpp"
 #include "dynamics/prescribed_transport.hpp"
 #include "dynamics/transport.hpp"
+#include "mesh/node_extrema.hpp"
 #include "model/initial_state.hpp"
 #include "model/prescribed_velocity.hpp"
 #include "output/grid_fields.hpp"
@@ -110,7 +111,13 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
 template <int D>
 void SimulationOf<D>::build_transport(std::array<bool, 2> zero_wall_vorticity) {
   zero_wall_vorticity_ = zero_wall_vorticity;
-  transport_ = scene_.flow.prescribed ? prescribed_transport() : induced_transport();
+  if (!scene_.flow.prescribed) {
+    transport_ = induced_transport();
+    return;
+  }
+  auto given = prescribed_transport();
+  given_ = given.get();
+  transport_ = std::move(given);
 }
 
 template <int D>
@@ -136,7 +143,7 @@ std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::induced_transport() 
 }
 
 template <int D>
-std::unique_ptr<dynamics::ParcelMotion<D>> SimulationOf<D>::prescribed_transport() const {
+std::unique_ptr<dynamics::PrescribedTransport<D>> SimulationOf<D>::prescribed_transport() const {
   auto velocity = std::make_unique<PrescribedVelocity<D>>(scene_, grid_);
   return std::make_unique<dynamics::PrescribedTransport<D>>(
       grid_, std::move(velocity), scheme_of(scene_), shape_integrator_of(scene_), reference_,
@@ -289,10 +296,37 @@ void SimulationOf<D>::require_finite() const {
                           time_, step_));
 }
 
+/// A flow that is known beforehand counts as it is at its strongest until the end of the step: it
+/// may be at rest when the step begins.
+template <int D>
+dynamics::TimeStep SimulationOf<D>::step_allowed_by_flow() {
+  // Parts of the step at which to look, none of them a likely zero of a periodic factor.
+  constexpr std::array<double, 4> looked_at = {0.13, 0.41, 0.72, 1.0};
+  constexpr double settled = 0.9;
+  const auto choose = [&](const mesh::FlowSummary& flow) {
+    return dynamics::choose_time_step<D>(step_control_, grid_, flow, scene_.background.coriolis[2]);
+  };
+  dynamics::TimeStep allowed = choose(flow_summary_);
+  while (given_ != nullptr && !step_control_.fixed) {
+    const double span = std::min(allowed.seconds, scene_.time.end - time_);
+    mesh::FlowSummary strongest = flow_summary_;
+    for (const double part : looked_at) {
+      const mesh::FlowSummary* later = given_->summary_at(time_ + part * span, times_);
+      if (later == nullptr) return allowed;
+      mesh::merge_extrema(strongest, *later);
+    }
+    // Within a shorter step the flow may stay weaker, but for a longer one it is known not to.
+    const dynamics::TimeStep shorter = choose(strongest);
+    const double looked_at_until = allowed.seconds;
+    if (shorter.seconds < allowed.seconds) allowed = shorter;
+    if (!(shorter.seconds < settled * looked_at_until)) break;
+  }
+  return allowed;
+}
+
 template <int D>
 dynamics::TimeStep SimulationOf<D>::allowed_step() {
-  dynamics::TimeStep allowed = dynamics::choose_time_step<D>(step_control_, grid_, flow_summary_,
-                                                             scene_.background.coriolis[2]);
+  dynamics::TimeStep allowed = step_allowed_by_flow();
   if (!step_control_.fixed) {
     const double physics = buoyancy_.physics.largest_step();
     if (physics < allowed.seconds) allowed = {physics, "operator"};

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "dynamics/prescribed_transport.hpp"
 #include "model/gridded_fields.hpp"
 #include "model/mesh_access_of.hpp"
 #include "model/simulation.hpp"
@@ -65,12 +66,13 @@ class SimulationOf final : public Simulation {
 
   void build_transport(std::array<bool, 2> zero_wall_vorticity);
   std::unique_ptr<dynamics::ParcelMotion<D>> induced_transport() const;
-  std::unique_ptr<dynamics::ParcelMotion<D>> prescribed_transport() const;
+  std::unique_ptr<dynamics::PrescribedTransport<D>> prescribed_transport() const;
   void warn_of_divergence() const;
   double aspect_limit() const;
   std::array<bool, 2> walls_without_vorticity() const;
   GriddedFields<D> gridded() const;
   void place_parcels(const scene::Scene& scene);
+  dynamics::TimeStep step_allowed_by_flow();
   void require_finite() const;
   void account_for_variance(VarianceBudget::Sink sink);
   std::vector<double> corners() const;
@@ -82,6 +84,7 @@ class SimulationOf final : public Simulation {
   TracedBuoyancy buoyancy_;
   std::array<bool, 2> zero_wall_vorticity_{false, false};
   std::unique_ptr<dynamics::ParcelMotion<D>> transport_;
+  dynamics::PrescribedTransport<D>* given_ = nullptr;  // the same, where the flow is prescribed
   parcels::Tiling<D> tiling_;
   parcels::Upkeep<D> upkeep_;
   parcels::VolumeCorrection<D> correction_;
