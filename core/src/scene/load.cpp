@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_bytes = std::size_t{16} << 20U;
 constexpr int max_extends = 16;
+constexpr const char* no_operator = "none";
 
 /// Scene files of the folder the missing one should be in, the nearest name first.
 std::string names_near(const fs::path& missing) {
@@ -123,14 +124,19 @@ Node load_layer(const std::string& path, Loading& loading) {
   return extended(std::move(node), path, loading);
 }
 
+/// Operators of the same label are laid over each other, others are added; `use: none` leaves one
+/// out.
 void overlay_operators(Node& base, const Node& over) {
   for (const Node& block : over.items) {
     const std::string label = operator_label(block);
     const auto same = std::find_if(base.items.begin(), base.items.end(), [&](const Node& other) {
       return operator_label(other) == label;
     });
+    const Entry* use = block.find("use");
     if (same == base.items.end() || label.empty())
       base.items.push_back(block);
+    else if (use != nullptr && use->value.text == no_operator)
+      base.items.erase(same);
     else
       overlay(*same, block);
   }

@@ -119,6 +119,30 @@ TEST(ReadScene, ResolvedScenesReadBackAsThemselves) {
   }
 }
 
+TEST(ReadScene, OperatorsOfAVariantAreLaidOverByNameAddedOrLeftOut) {
+  const fs::path folder = fs::path(testing::TempDir()) / "operators";
+  fs::create_directories(folder);
+  std::ofstream(folder / "base.yaml") << cube
+                                      << "operators: [{use: org.a.clouds}, {use: org.a.rain, "
+                                         "name: fall}, {use: org.a.mixing, beta: 1}]\n";
+  std::ofstream(folder / "child.yaml")
+      << "extends: base.yaml\noperators: [{name: mixing, beta: 5}, {name: fall, use: none}, "
+         "{use: org.a.forcing}]\n";
+  std::ofstream(folder / "wrong.yaml")
+      << "extends: base.yaml\noperators: [{name: rian, use: none}]\n";
+  Problems problems;
+  const Scene scene = read_scene((folder / "child.yaml").string(), {}, problems);
+  EXPECT_TRUE(problems.empty()) << problems.render();
+  std::vector<std::string> uses;
+  for (const OperatorBlock& block : scene.operators) uses.push_back(block.use);
+  EXPECT_EQ(uses, (std::vector<std::string>{"org.a.clouds", "org.a.mixing", "org.a.forcing"}));
+  EXPECT_EQ(scene.operators[1].parameters.at(0).second.text, "5");
+  // What is not there cannot be left out: the name stays, and no library answers to it.
+  const Scene wrong = read_scene((folder / "wrong.yaml").string(), {}, problems);
+  ASSERT_EQ(wrong.operators.size(), 4u);
+  EXPECT_EQ(wrong.operators[3].use, "none");
+}
+
 TEST(ReadScene, InheritsByKeysAndBlamesTheRightFile) {
   const fs::path folder = fs::path(testing::TempDir()) / "extends";
   fs::create_directories(folder);
