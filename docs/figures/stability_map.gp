@@ -20,14 +20,10 @@ set xrange [-0.6:scenes - 0.4]
 set arrow from graph 0, first 0.2 to graph 1, first 0.2 nohead dt 3 lc rgb '#888888'
 set label 'default' at graph 1.005, first 0.2 font ',9' tc rgb '#666666'
 plot_all = "\
-  data using ($2-0.24):(strcol(3) eq 'rk4' && strcol(4) eq 'exponential' ? $5 : NaN):xtic(1) pt 7 ps 1.3 lc rgb '#1b6ca8' title 'RK4, exponential: accurate', \
-  data using ($2-0.24):(strcol(3) eq 'rk4' && strcol(4) eq 'exponential' ? $6 : NaN) pt 6 ps 1.8 lw 1.5 lc rgb '#1b6ca8' title 'survives', \
-  data using ($2-0.08):(strcol(3) eq 'rk3' && strcol(4) eq 'exponential' ? $5 : NaN) pt 5 ps 1.2 lc rgb '#d1762d' title 'RK3, exponential: accurate', \
-  data using ($2-0.08):(strcol(3) eq 'rk3' && strcol(4) eq 'exponential' ? $6 : NaN) pt 4 ps 1.6 lw 1.5 lc rgb '#d1762d' title 'survives', \
-  data using ($2+0.08):(strcol(3) eq 'rk4' && strcol(4) eq 'runge_kutta' ? $5 : NaN) pt 9 ps 1.3 lc rgb '#3a8f5d' title 'RK4 on dB/dt: accurate', \
-  data using ($2+0.08):(strcol(3) eq 'rk4' && strcol(4) eq 'runge_kutta' ? $6 : NaN) pt 8 ps 1.7 lw 1.5 lc rgb '#3a8f5d' title 'survives', \
-  data using ($2+0.24):(strcol(3) eq 'rk3' && strcol(4) eq 'runge_kutta' ? $5 : NaN) pt 11 ps 1.3 lc rgb '#a23b72' title 'RK3 on dB/dt: accurate', \
-  data using ($2+0.24):(strcol(3) eq 'rk3' && strcol(4) eq 'runge_kutta' ? $6 : NaN) pt 10 ps 1.7 lw 1.5 lc rgb '#a23b72' title 'survives'"
+  data using ($2-0.14):(strcol(3) eq 'rk4' ? $5 : NaN):xtic(1) pt 7 ps 1.3 lc rgb '#1b6ca8' title 'RK4, shapes by the exponential: accurate', \
+  data using ($2-0.14):(strcol(3) eq 'rk4' ? $6 : NaN) pt 6 ps 1.9 lw 1.5 lc rgb '#1b6ca8' title 'survives', \
+  data using ($2+0.14):(strcol(3) eq 'rk3' ? $5 : NaN) pt 5 ps 1.2 lc rgb '#d1762d' title 'RK3, shapes too: accurate', \
+  data using ($2+0.14):(strcol(3) eq 'rk3' ? $6 : NaN) pt 4 ps 1.8 lw 1.5 lc rgb '#d1762d' title 'survives'"
 set terminal svg size 1000,560 font 'Helvetica,12'
 set output 'docs/images/stability_map.svg'
 eval 'plot '.plot_all

@@ -389,7 +389,7 @@ int OperatorSequence::prepare(std::size_t which, const StepTime& at, bool second
   if (needed > most_substeps) {
     throw Error(ExitCode::numerical,
                 fmt::format("operator '{}' needs steps of at most {:.6g} s, more than {} in the "
-                            "present step of {:.6g} s; lower time.step.max",
+                            "present step of {:.6g} s; lower time.step.largest",
                             bound.entry->name, limit, most_substeps, at.dt));
   }
   return std::max(1, static_cast<int>(needed));

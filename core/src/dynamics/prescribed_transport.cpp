@@ -159,7 +159,7 @@ void PrescribedTransport<D>::sample_column(double time, std::size_t column, bool
       const std::size_t i = d == D - 1 ? k : index[d];
       scratch.position[d][k] = grid_.lower[d] + static_cast<double>(i) * grid_.spacing[d];
     }
-  std::array<const double*, D> at;
+  std::array<const double*, D> at{};
   std::copy(scratch.position.begin(), scratch.position.end(), at.begin());
   velocity_->sample(time, levels, at, scratch.samples);
   constexpr auto slots = gradient_slots<D>();
