@@ -33,6 +33,11 @@ bool is_derived(const parcels::Store& store, int column) {
          store.scalars()[static_cast<std::size_t>(scalar)].nature == parcels::Nature::derived;
 }
 
+bool is_shape(const parcels::Store& store, int column) {
+  const int component = column - store.dimension() - 1 - store.vorticity_components();
+  return component >= 0 && component < store.shape_components();
+}
+
 /// Column of a quantity on the parcels, −1 for an optional one that is not there: an optional
 /// quantity to be written must be carried, for what is derived is not the operator's to change.
 int find_parcel_column(const BoundOperator& bound, const pileus_quantity& row,
@@ -87,6 +92,7 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
       if (!slot.derived) bound.read_columns.push_back(slot.column);
       if (slot.writable) (slot.derived ? bound.derived : bound.written).push_back(i);
       if (slot.writable && slot.column < store.dimension()) bound.moves_parcels = true;
+      if (slot.writable && is_shape(store, slot.column)) bound.deforms_parcels = true;
     }
     bound.slots.push_back(slot);
   }

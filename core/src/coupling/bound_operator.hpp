@@ -53,10 +53,11 @@ struct BoundOperator {
   /// Whose change makes diagnose or the conditions stale: columns of the store, and the surface
   /// fields counted on from there.
   std::vector<int> read_columns;
-  bool dormant = false;        // not called: all its effects wait to be switched on
-  bool idle = false;           // apply is not called: no clause of its activity can hold
-  std::vector<MeshSlot> mesh;  // to be made before its hooks are called
-  bool moves_parcels = false;  // apply writes positions
+  bool dormant = false;          // not called: all its effects wait to be switched on
+  bool idle = false;             // apply is not called: no clause of its activity can hold
+  std::vector<MeshSlot> mesh;    // to be made before its hooks are called
+  bool moves_parcels = false;    // apply writes positions
+  bool deforms_parcels = false;  // apply writes shapes
 
   const pileus_operator& op() const { return entry->table->op; }
   bool is_local() const { return op().scope == PILEUS_LOCAL; }

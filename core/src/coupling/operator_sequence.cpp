@@ -419,7 +419,10 @@ void OperatorSequence::apply_once(std::size_t which, const pileus_step& step) {
   }
   throw_first_failure();
   throw_first_finding();
-  if (bound.moves_parcels && mesh_quantities_ != nullptr) mesh_quantities_->access().confine();
+  if (mesh_quantities_ != nullptr) {
+    if (bound.moves_parcels) mesh_quantities_->access().confine();
+    if (bound.deforms_parcels) mesh_quantities_->access().close_shapes();
+  }
   close_books(which, blocks);
 }
 

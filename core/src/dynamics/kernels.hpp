@@ -52,11 +52,24 @@ struct GivenStageJob : StageJob<D> {
   const double* gradient[StageJob<D>::gradient_components];
 };
 
+/// Closes the shapes of parcels [begin, end), begin a multiple of 8, as the last stage does: det B
+/// = (V/V₁)², and none longer than the limit.
+template <int D>
+struct ShapeJob {
+  double* shape[StageJob<D>::shape_components];
+  const double* size_volume;  // of the ellipsoids
+  double aspect_limit;        // of the longest half-axis to the others
+  std::size_t begin, end;
+  std::size_t broken;  // out: parcels whose shape went beyond that and was blunted
+};
+
 struct Kernels {
   void (*stage_3d)(StageJob<3>&);
   void (*stage_2d)(StageJob<2>&);
   void (*given_stage_3d)(GivenStageJob<3>&);
   void (*given_stage_2d)(GivenStageJob<2>&);
+  void (*close_shapes_3d)(ShapeJob<3>&);
+  void (*close_shapes_2d)(ShapeJob<2>&);
 };
 
 const Kernels& kernels();

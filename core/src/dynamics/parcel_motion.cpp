@@ -9,6 +9,13 @@ namespace {
 
 constexpr std::size_t read_ahead = 8;
 
+void run_closing(ShapeJob<3>& job) {
+  kernels().close_shapes_3d(job);
+}
+void run_closing(ShapeJob<2>& job) {
+  kernels().close_shapes_2d(job);
+}
+
 }  // namespace
 
 template <int D>
@@ -109,6 +116,24 @@ StageJob<D> ParcelMotion<D>::stage_job(parcels::Store& store, std::size_t s, dou
   whole.aspect_limit = aspect_limit_;
   whole.shape_integrator = shape_;
   return whole;
+}
+
+template <int D>
+void ParcelMotion<D>::close_shapes(parcels::Store& store) {
+  ShapeJob<D> whole{};
+  for (int c = 0; c < StageJob<D>::shape_components; ++c) whole.shape[c] = store.shape(c);
+  whole.size_volume = store.size_volume();
+  whole.aspect_limit = aspect_limit_;
+  broken_shapes_ += ordered_reduce(
+      store.size(), std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        ShapeJob<D> job = whole;
+        job.begin = begin;
+        job.end = end;
+        run_closing(job);
+        return job.broken;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
 }
 
 template <int D>

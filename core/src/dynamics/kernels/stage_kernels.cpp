@@ -170,6 +170,21 @@ Symmetric2<Pack> close_shape(Symmetric2<Pack> b, Pack area, std::size_t count, d
           select(healthy, whole.zz, blunt.zz)};
 }
 
+void store_shape(double* const* shape, std::size_t p, const Symmetric3<Pack>& b) {
+  store(shape[0] + p, b.xx);
+  store(shape[1] + p, b.xy);
+  store(shape[2] + p, b.xz);
+  store(shape[3] + p, b.yy);
+  store(shape[4] + p, b.yz);
+  store(shape[5] + p, b.zz);
+}
+
+void store_shape(double* const* shape, std::size_t p, const Symmetric2<Pack>& b) {
+  store(shape[0] + p, b.xx);
+  store(shape[1] + p, b.xz);
+  store(shape[2] + p, b.zz);
+}
+
 void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Matrix3<Pack>& s) {
   Symmetric3<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p), load(job.shape[2] + p),
                      load(job.shape[3] + p), load(job.shape[4] + p), load(job.shape[5] + p)};
@@ -198,12 +213,7 @@ void advance_shape(StageJob<3>& job, std::size_t p, std::size_t count, const Mat
          b.yy + job.advance * k.yy, b.yz + job.advance * k.yz, b.zz + job.advance * k.zz};
   }
   if (job.last) b = close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken);
-  store(job.shape[0] + p, b.xx);
-  store(job.shape[1] + p, b.xy);
-  store(job.shape[2] + p, b.xz);
-  store(job.shape[3] + p, b.yy);
-  store(job.shape[4] + p, b.yz);
-  store(job.shape[5] + p, b.zz);
+  store_shape(job.shape, p, b);
 }
 
 void advance_shape(StageJob<2>& job, std::size_t p, std::size_t count, const Matrix2<Pack>& s) {
@@ -227,9 +237,7 @@ void advance_shape(StageJob<2>& job, std::size_t p, std::size_t count, const Mat
     b = {b.xx + job.advance * k.xx, b.xz + job.advance * k.xz, b.zz + job.advance * k.zz};
   }
   if (job.last) b = close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken);
-  store(job.shape[0] + p, b.xx);
-  store(job.shape[1] + p, b.xz);
-  store(job.shape[2] + p, b.zz);
+  store_shape(job.shape, p, b);
 }
 
 /// k ← A k + f and, unless only evaluating, y ← y + B Δt k for one variable.
@@ -307,11 +315,34 @@ void given_stage_2d(GivenStageJob<2>& job) {
   }
 }
 
+void close_shapes_3d(ShapeJob<3>& job) {
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = std::min<std::size_t>(job.end - p, lanes);
+    const Symmetric3<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
+                             load(job.shape[2] + p), load(job.shape[3] + p),
+                             load(job.shape[4] + p), load(job.shape[5] + p)};
+    store_shape(job.shape, p,
+                close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken));
+  }
+}
+
+void close_shapes_2d(ShapeJob<2>& job) {
+  for (std::size_t p = job.begin; p < job.end; p += lanes) {
+    const std::size_t count = std::min<std::size_t>(job.end - p, lanes);
+    const Symmetric2<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
+                             load(job.shape[2] + p)};
+    store_shape(job.shape, p,
+                close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken));
+  }
+}
+
 }  // namespace
 
 const dynamics::Kernels dynamics_kernels = {.stage_3d = stage_3d,
                                             .stage_2d = stage_2d,
                                             .given_stage_3d = given_stage_3d,
-                                            .given_stage_2d = given_stage_2d};
+                                            .given_stage_2d = given_stage_2d,
+                                            .close_shapes_3d = close_shapes_3d,
+                                            .close_shapes_2d = close_shapes_2d};
 
 }  // namespace pileus::PILEUS_ISA
