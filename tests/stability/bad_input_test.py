@@ -131,3 +131,8 @@ class BadInput(ProgramTest):
     def test_operator_values_out_of_range(self):
         ended = self.run_scene(RELAXING_THERMAL, values=SMALL | {"initial.passive_tracer": "1e9"})
         self.assert_refused(ended, NUMERICAL, "passive_tracer", "1000000000", "parcel", "failure-")
+
+    def test_failure_of_an_operator_with_slashes_in_its_name(self):
+        ended = self.run_scene(RELAXING_THERMAL, values=SMALL | {
+            "initial.passive_tracer": "1e9", "operators.relaxation.name": "tracer/relaxed"})
+        self.assert_refused(ended, NUMERICAL, "tracer/relaxed", "failure-tracer_relaxed-")

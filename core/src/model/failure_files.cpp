@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/version.hpp"
 #include "coupling/failure.hpp"
 #include "output/failure_bundle.hpp"
@@ -51,6 +53,12 @@ output::NamedData state_bundle(const Error& error, const Simulation& simulation)
   return data;
 }
 
+/// A label of the scene as a part of a file name: slashes would ask for folders.
+std::string file_part(std::string label) {
+  std::replace(label.begin(), label.end(), '/', '_');
+  return label;
+}
+
 }  // namespace
 
 std::string write_failure(const std::filesystem::path& folder, const Error& error,
@@ -62,7 +70,8 @@ std::string write_failure(const std::filesystem::path& folder, const Error& erro
   data.texts["version"] = std::string(build_record().version);
   data.texts["commit"] = std::string(build_record().commit);
   const std::filesystem::path path =
-      folder / fmt::format("failure-{}-{}.h5", failure ? failure->bundle().operator_name : "state",
+      folder / fmt::format("failure-{}-{}.h5",
+                           failure ? file_part(failure->bundle().operator_name) : "state",
                            simulation.step());
   output::write_failure_bundle(path, data);
   return path.string();
