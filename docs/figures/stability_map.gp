@@ -17,8 +17,8 @@ set rmargin 6
 stats data skip 1 using 2 nooutput
 scenes = int(STATS_max) + 1
 set xrange [-0.6:scenes - 0.4]
-set arrow from graph 0, first 0.2 to graph 1, first 0.2 nohead dt 3 lc rgb '#888888'
-set label 'default' at graph 1.005, first 0.2 font ',9' tc rgb '#666666'
+set arrow from graph 0, first 0.25 to graph 1, first 0.25 nohead dt 3 lc rgb '#888888'
+set label 'default' at graph 1.005, first 0.25 font ',9' tc rgb '#666666'
 plot_all = "\
   data using ($2-0.14):(strcol(3) eq 'rk4' ? $5 : NaN):xtic(1) pt 7 ps 1.3 lc rgb '#1b6ca8' title 'RK4, shapes by the exponential: accurate', \
   data using ($2-0.14):(strcol(3) eq 'rk4' ? $6 : NaN) pt 6 ps 1.9 lw 1.5 lc rgb '#1b6ca8' title 'survives', \

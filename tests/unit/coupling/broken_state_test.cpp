@@ -29,6 +29,8 @@ const Subject subjects[] = {
       {"diffusivity", "[0.1 m2/s, 0.2 m2/s, 0.1 m2/s]"}},
      {}},
     {"org.pileus.stochastic_stretching", {{"coefficient", "2"}}, {}},
+    {"org.pileus.coherent_displacement", {{"smagorinsky", "1"}}, {}},
+    {"org.pileus.dilution", {}, {}},
 };
 
 class BrokenState : public ::testing::TestWithParam<Subject> {};

@@ -9,6 +9,7 @@ namespace {
 
 using dynamics::GivenStageJob;
 using dynamics::ShapeIntegrator;
+using dynamics::ShapeJob;
 using dynamics::StageJob;
 using mesh::FlowRecord;
 
