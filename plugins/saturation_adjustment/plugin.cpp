@@ -96,8 +96,11 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
                   .range(0.0, 1.0)
                   .when(condensing)
                   .doc("liquid water");
-    temperature_ =
-        d.derives("air_temperature", "K").range(coldest, 1e4).when(real).doc("temperature");
+    temperature_ = d.derives("air_temperature", "K")
+                       .range(coldest, 1e4)
+                       .when(real)
+                       .on_demand()
+                       .doc("temperature");
   }
 
   void build_reference_state() {
@@ -126,14 +129,14 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
     const double* theta = block.in(theta_l_);
     const double* total = block.in(total_water_);
     double* b = block.out(buoyancy_);
-    double* t = block.out(temperature_);
+    double* t = block.has(temperature_) ? block.out(temperature_) : nullptr;
     const double scale = constants_.gravity / value(air_.buoyancy_temperature);
     block.each([&](auto p) {
       const thermo::ReferenceState::Point at = reference_->at(z[p]);
       const double temperature_l = at.exner * theta[p];
       if (!(temperature_l >= coldest)) refuse_cold(block.uid(p), z[p], temperature_l);
       const Equilibrium found = condense(p, at.exner, temperature_l);
-      t[p] = found.temperature;
+      if (t != nullptr) t[p] = found.temperature;
       const double theta_v = thermo::virtual_potential_temperature(
           found.temperature / at.exner, total[p] - found.liquid, found.liquid);
       b[p] = scale * (theta_v - at.theta_v);

@@ -50,7 +50,7 @@ class TwoMoment : public Operator<TwoMoment> {
     const double* cloud = if_there(cloud_);
     const double* rain = if_there(rain_);
     const double* previous = if_there(previous_height_);
-    double* kelvin = block.out(temperature_);
+    double* kelvin = block.has(temperature_) ? block.out(temperature_) : nullptr;
     double* humidity = block.has(relative_humidity_) ? block.out(relative_humidity_) : nullptr;
     double* b = derives_buoyancy_ ? block.out(buoyancy_) : nullptr;
     block.each([&](auto p) {
@@ -58,7 +58,7 @@ class TwoMoment : public Operator<TwoMoment> {
       const double t =
           air_.prescribed_temperature ? at.exner * profile_theta(z[p]) : at.exner * theta[p];
       if (!(t >= coldest_air)) refuse_cold(block.uid(p), z[p], t);
-      kelvin[p] = t;
+      if (kelvin != nullptr) kelvin[p] = t;
       const bool cloudy = cloud != nullptr && cloud[p] > 0;
       const bool needs_pressure = cloudy || (humidity != nullptr && vapour[p] != 0);
       const double pressure = needs_pressure ? thermo::pressure_of_exner(at.exner, kappa_) : 0.0;
@@ -276,10 +276,11 @@ class TwoMoment : public Operator<TwoMoment> {
                 .range(0.0, 1e300)
                 .when(with_peak)
                 .doc("met since the start while droplets could form");
-    temperature_ = d.derives("air_temperature", "K").range(coldest_air, 1e4);
+    temperature_ = d.derives("air_temperature", "K").range(coldest_air, 1e4).on_demand();
     relative_humidity_ = d.derives("relative_humidity", "1")
                              .range(0.0, std::numeric_limits<double>::max())
                              .when(condensing)
+                             .on_demand()
                              .doc("over liquid water; above 1 droplets are activated");
     buoyancy_ = d.derives("buoyancy", "m s-2")
                     .range(-1e6, 1e6)

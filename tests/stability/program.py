@@ -48,9 +48,12 @@ def settings(values):
 
 
 def environment(**extra):
-    """Idle threads sleep, so that more threads than cores cost little; no plugins of the caller."""
+    """Idle threads sleep, so that more threads than cores cost little; no plugins of the caller. A
+    program with AddressSanitizer accepts libraries that are loaded before it."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith("PILEUS_")}
-    return kept | {"OMP_WAIT_POLICY": "passive"} | {k: str(v) for k, v in extra.items()}
+    sanitizer = f"{kept.get('ASAN_OPTIONS', '')}:verify_asan_link_order=0"
+    return (kept | {"OMP_WAIT_POLICY": "passive", "ASAN_OPTIONS": sanitizer}
+            | {k: str(v) for k, v in extra.items()})
 
 
 class ProgramTest(unittest.TestCase):

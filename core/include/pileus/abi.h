@@ -66,8 +66,10 @@ enum { /* access, a bit set */
   PILEUS_WRITE = 2u,        /* returns a new value */
   PILEUS_CREATE = 4u,       /* owns the quantity; one owner per run */
   PILEUS_ADD = 8u,          /* only adds to a shared accumulator */
-  PILEUS_OPTIONAL = 16u     /* not called for: exists if something else brings it about; one to be
+  PILEUS_OPTIONAL = 16u,    /* not called for: exists if something else brings it about; one to be
                              * written exists only where parcels carry it, not where it is derived */
+  PILEUS_ON_DEMAND = 32u    /* derived, and not needed by the flow: diagnose is given a NULL view in
+                             * the stages within a step, unless another closure reads it */
 };
 enum { /* nature: what happens at a merge or split; 0: as the quantity's owner declares */
   PILEUS_EXTENSIVE = 1, PILEUS_INTENSIVE, PILEUS_LABEL, PILEUS_DERIVED

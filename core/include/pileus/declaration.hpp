@@ -47,6 +47,9 @@ class Declaration {
     /// Not called for: exists (Block::has) if another operator or the scene brings it about; one
     /// that is updated exists only where parcels carry it, not where it is derived.
     Quantity& optional() { return row_.access |= PILEUS_OPTIONAL, *this; }
+    /// Of one that is derived: left out within a step, where only the flow is advanced. Ask
+    /// Block::has in `diagnose`.
+    Quantity& on_demand() { return row_.access |= PILEUS_ON_DEMAND, *this; }
     Quantity& initial(double value) { return row_.initial = value, *this; }
     Quantity& components(std::uint32_t count) { return row_.components = count, *this; }
     Quantity& place(std::uint32_t where) { return row_.place = where, *this; }

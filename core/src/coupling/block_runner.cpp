@@ -69,8 +69,9 @@ struct BlockRunner::Attempt {
   host::CallResult last{};
 };
 
-pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, bool diagnosing,
+pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Derived what,
                                 Workspace& work) const {
+  const bool diagnosing = what != Derived::none;
   const BoundOperator& bound = operators_[which];
   std::vector<pileus_view>& views = work.views[which];
   for (std::size_t s = 0; s < views.size(); ++s) {
@@ -82,7 +83,7 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, boo
       views[s].count = static_cast<std::int64_t>(surface_.columns());
       continue;
     }
-    const int column = slot.withheld ? -1 : slot.column;
+    const int column = is_left_out(slot, what) ? -1 : slot.column;
     const bool writable = slot.writable && slot.derived == diagnosing;
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
     views[s].data = column >= 0 ? store_.column(column) + range.begin : nullptr;
@@ -100,15 +101,15 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, boo
 }
 
 bool BlockRunner::diagnose(std::size_t which, const pileus_step& step, const ParcelRange& range,
-                           Workspace& work) const {
+                           Derived what, Workspace& work) const {
   const Clock::time_point start = Clock::now();
   const BoundOperator& bound = operators_[which];
-  Attempt a{which, bound, step, range, work, block(which, range, true, work)};
+  Attempt a{which, bound, step, range, work, block(which, range, what, work)};
   a.last = bound.instance->diagnose(step, a.record, range.block);
   a.calls = 1;
   for (std::size_t s : bound.derived) {
     if (!a.last.ok()) break;
-    if (bound.slots[s].withheld) continue;
+    if (is_left_out(bound.slots[s], what)) continue;
     violates(store_.column(bound.slots[s].column) + range.begin, range.count, {}, bound.slots[s], s,
              a.record.uid, a.last);
   }
@@ -158,7 +159,7 @@ host::CallResult BlockRunner::init(std::size_t which, const pileus_step& step,
   for (std::size_t w = 0; w < bound.written.size(); ++w)
     before.emplace_back(column(w), column(w) + range.count);
   std::fill(work.attempt.begin(), work.attempt.end(), 0.0);
-  const Attempt a{which, bound, step, range, work, block(which, range, false, work)};
+  const Attempt a{which, bound, step, range, work, block(which, range, Derived::none, work)};
   host::CallResult result = bound.instance->init(step, a.record);
   if (!result.ok() || !writes_violate(a, {}, result)) return result;
   // As it was, so that the values it was given are not taken for those it wrote.
@@ -220,7 +221,7 @@ bool BlockRunner::apply(std::size_t which, const pileus_step& step, const Parcel
   const Clock::time_point start = Clock::now();
   const BoundOperator& bound = operators_[which];
   const ParcelRange part{range.block, range.begin + active.begin, active.count};
-  Attempt a{which, bound, step, part, work, block(which, part, false, work)};
+  Attempt a{which, bound, step, part, work, block(which, part, Derived::none, work)};
   snapshot(a);
   std::fill(work.ledger.begin(), work.ledger.end(), 0.0);
   const bool done = advance(a, active.indices, 0);
@@ -239,7 +240,7 @@ bool BlockRunner::apply(std::size_t which, const pileus_step& step, const Parcel
 
 void BlockRunner::audit(std::size_t which, const pileus_step& step, const ParcelRange& range,
                         std::span<const std::uint32_t> skipped, Workspace& work) const {
-  Attempt a{which, operators_[which], step, range, work, block(which, range, false, work)};
+  Attempt a{which, operators_[which], step, range, work, block(which, range, Derived::none, work)};
   snapshot(a);
   std::fill(work.attempt.begin(), work.attempt.end(), 0.0);
   a.last = call_once(a, skipped, step);

@@ -27,6 +27,17 @@ struct ParcelRange {
   std::size_t begin = 0, count = 0;
 };
 
+/// Which derived quantities a call is to compute.
+enum class Derived {
+  none,           // it advances the others
+  within_a_step,  // those that the flow needs
+  all,
+};
+
+inline bool is_left_out(const BoundSlot& slot, Derived what) {
+  return slot.withheld || (slot.on_demand && what == Derived::within_a_step);
+}
+
 class BlockRunner {
  public:
   /// `mesh` is null when no operator reads the mesh.
@@ -40,7 +51,7 @@ class BlockRunner {
 
   /// Runs the diagnose hook of operator `which`. False: work.failure was set; what it derived is
   /// not to be used.
-  bool diagnose(std::size_t which, const pileus_step& step, const ParcelRange& range,
+  bool diagnose(std::size_t which, const pileus_step& step, const ParcelRange& range, Derived what,
                 Workspace& work) const;
 
   /// Runs the apply hook on the given active parcels of the range and books the result into
@@ -53,9 +64,9 @@ class BlockRunner {
   void audit(std::size_t which, const pileus_step& step, const ParcelRange& range,
              std::span<const std::uint32_t> skipped, Workspace& work) const;
 
-  /// A record over the range in which derived quantities (`diagnosing`) or all others are
-  /// writable as declared. It refers to `work`.
-  pileus_block block(std::size_t which, const ParcelRange& range, bool diagnosing,
+  /// A record over the range in which the derived quantities to compute or, with none of them, all
+  /// others are writable as declared. It refers to `work`.
+  pileus_block block(std::size_t which, const ParcelRange& range, Derived what,
                      Workspace& work) const;
 
  private:

@@ -78,6 +78,7 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
     slot.low = std::max(row.low, std::numeric_limits<double>::lowest());
     slot.high = std::min(row.high, std::numeric_limits<double>::max());
     slot.derived = row.nature == PILEUS_DERIVED;
+    slot.on_demand = (row.access & PILEUS_ON_DEMAND) != 0;
     slot.writable = (row.access & (PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD)) != 0;
     const bool exists = bound.entry->exists(i);
     if (exists && row.place == PILEUS_SURFACE) {
@@ -144,6 +145,19 @@ bool is_idle(const BoundOperator& bound) {
 }
 
 }  // namespace
+
+void keep_what_closures_read(std::vector<BoundOperator>& operators) {
+  const auto is_read = [&](int column) {
+    return std::any_of(operators.begin(), operators.end(), [&](const BoundOperator& reader) {
+      return reader.op().diagnose != nullptr &&
+             std::find(reader.read_columns.begin(), reader.read_columns.end(), column) !=
+                 reader.read_columns.end();
+    });
+  };
+  for (BoundOperator& bound : operators)
+    for (BoundSlot& slot : bound.slots)
+      slot.on_demand = slot.on_demand && slot.column >= 0 && !is_read(slot.column);
+}
 
 void follow_effects(BoundOperator& bound) {
   bound.dormant = bound.entry->is_dormant();

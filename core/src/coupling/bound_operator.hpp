@@ -21,7 +21,8 @@ struct BoundSlot {
   MeshSlot mesh;         // of places on the mesh
   bool derived = false;  // written by diagnose; every other writable slot by apply
   bool writable = false;
-  bool withheld = false;  // exists, but its effect waits to be switched on
+  bool withheld = false;   // exists, but its effect waits to be switched on
+  bool on_demand = false;  // derived, and nobody reads it within a step
   double low = 0, high = 0;
 };
 
@@ -62,6 +63,9 @@ struct BoundOperator {
   const pileus_operator& op() const { return entry->table->op; }
   bool is_local() const { return op().scope == PILEUS_LOCAL; }
 };
+
+/// What one closure derives and another reads is needed within a step, too.
+void keep_what_closures_read(std::vector<BoundOperator>& operators);
 
 /// Takes over which effects of the entry are on: at the start, and when one is switched on.
 void follow_effects(BoundOperator& bound);

@@ -18,7 +18,7 @@ bool OperatorSequence::activate(const std::string& effect) {
     }
     if (!mine || which >= bound_.size()) continue;
     follow_effects(bound_[which]);
-    progress_[which].diagnosed_at = 0;
+    progress_[which].diagnosed_at = progress_[which].demanded_at = 0;
     progress_[which].idle_at = 0;
     found = true;
   }

@@ -10,6 +10,7 @@ namespace pileus::coupling {
 
 struct OperatorProgress {
   std::uint64_t diagnosed_at = 0;  // version of its inputs when diagnose last ran
+  std::uint64_t demanded_at = 0;   // the same, when it last was asked for everything it derives
   std::uint64_t idle_at = 0;       // version of its conditions when last nobody was active
   double step_limit = std::numeric_limits<double>::infinity();  // s, of its last prepare
   std::vector<int> condition_columns;                           // what the conditions read

@@ -133,6 +133,7 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
     progress.change.resize(entry.table->budgets.size());
     progress.source.resize(entry.table->budgets.size());
   }
+  keep_what_closures_read(bound_);
   runner_ = std::make_unique<BlockRunner>(bound_, store, surface_, grid_ ? &*grid_ : nullptr,
                                           mesh_quantities_.get());
   versions_.assign(static_cast<std::size_t>(store.column_count()) + surface_.list().size(),
@@ -252,7 +253,12 @@ void OperatorSequence::touch_core() {
 
 void OperatorSequence::diagnose(const StepTime& step) {
   touch_core();
-  refresh(step);
+  refresh(step, Derived::all);
+}
+
+void OperatorSequence::diagnose_stage(const StepTime& step) {
+  touch_core();
+  refresh(step, Derived::within_a_step);
 }
 
 /// What transport and upkeep move from here on is the ascent that the next calls account for.
@@ -264,32 +270,35 @@ void OperatorSequence::remember_heights() {
 }
 
 /// Runs the closures whose inputs have changed since they last ran, and those that depend on them.
-void OperatorSequence::refresh(const StepTime& step) {
+void OperatorSequence::refresh(const StepTime& step, Derived what) {
   clear_withheld();
   stale_.clear();
   for (const std::size_t which : plan_.closures) {
     const BoundOperator& bound = bound_[which];
     if (bound.dormant) continue;
     const std::uint64_t version = version_of(bound.read_columns);
-    if (version <= progress_[which].diagnosed_at) continue;
-    progress_[which].diagnosed_at = version;
+    OperatorProgress& progress = progress_[which];
+    if (version <= (what == Derived::all ? progress.demanded_at : progress.diagnosed_at)) continue;
+    progress.diagnosed_at = version;
+    if (what == Derived::all) progress.demanded_at = version;
     for (const std::size_t s : bound.derived) {
+      if (is_left_out(bound.slots[s], what)) continue;
       versions_[static_cast<std::size_t>(bound.slots[s].column)] = next_version_;
     }
     ++next_version_;
     stale_.push_back(which);
   }
-  if (!stale_.empty()) run_closures(step);
+  if (!stale_.empty()) run_closures(step, what);
 }
 
 /// Block by block, all closures of a block one after another while its columns are in the cache.
-void OperatorSequence::run_closures(const StepTime& step) {
+void OperatorSequence::run_closures(const StepTime& step, Derived what) {
   match_threads();
   parallel_tasks(block_count(), [&](std::size_t block) {
     Workspace& work = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
     for (const std::size_t which : stale_) {
       const pileus_step record = step_record(bound_[which], step, false);
-      if (!runner_->diagnose(which, record, block_range(block), work)) return;
+      if (!runner_->diagnose(which, record, block_range(block), what, work)) return;
     }
   });
   throw_first_failure();
@@ -339,7 +348,7 @@ bool OperatorSequence::skip_by_epoch(std::size_t which) {
 
 void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_half) {
   if (bound_[which].dormant || bound_[which].idle) return;
-  refresh(at);
+  refresh(at, Derived::all);
   if (skip_by_epoch(which)) {
     audit_idle(which, step_record(bound_[which], at, second_half));
     return;
@@ -350,7 +359,7 @@ void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_
   step.dt = at.dt / substeps;
   for (int k = 0; k < substeps; ++k) {
     if (k > 0) {
-      refresh(at);
+      refresh(at, Derived::all);
       make_mesh_quantities(which);
     }
     step.time = at.time + k * step.dt;

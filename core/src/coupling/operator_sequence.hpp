@@ -94,8 +94,10 @@ class OperatorSequence {
   /// Starts from a checkpoint whose state is in the store. Then diagnoses.
   void resume(const StepTime& step);
 
-  /// Brings every derived quantity up to date with parcels that have moved. Every stage.
+  /// Brings every derived quantity up to date with parcels that have moved.
   void diagnose(const StepTime& step);
+  /// The same within a step: without what operators derive on demand.
+  void diagnose_stage(const StepTime& step);
   /// Whether apply_before_transport does anything: some operator advances in half steps.
   bool splits_around_transport() const;
   /// Operators before the transport of a step (Strang only).
@@ -122,8 +124,8 @@ class OperatorSequence {
   void prepare_workspaces();
   pileus_step step_record(const BoundOperator& bound, const StepTime& at, bool second_half) const;
   void start(const StepTime& step, bool new_run);
-  void refresh(const StepTime& step);
-  void run_closures(const StepTime& step);
+  void refresh(const StepTime& step, Derived what);
+  void run_closures(const StepTime& step, Derived what);
   void match_threads();
   void apply(std::size_t which, const StepTime& at, bool second_half);
   bool skip_by_epoch(std::size_t which);

@@ -23,6 +23,7 @@ std::string access_words(std::uint32_t access) {
   add(PILEUS_WRITE, "writes");
   add(PILEUS_ADD, "adds");
   add(PILEUS_OPTIONAL, "if there");
+  add(PILEUS_ON_DEMAND, "on demand");
   return text;
 }
 

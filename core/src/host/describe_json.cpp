@@ -24,6 +24,7 @@ Json quantity_json(const pileus_quantity& q) {
   if ((q.access & PILEUS_WRITE) != 0) access.push_back("write");
   if ((q.access & PILEUS_ADD) != 0) access.push_back("add");
   if ((q.access & PILEUS_OPTIONAL) != 0) access.push_back("optional");
+  if ((q.access & PILEUS_ON_DEMAND) != 0) access.push_back("on_demand");
   return {{"name", q.name},
           {"units", q.units},
           {"place", words::place(q.place)},

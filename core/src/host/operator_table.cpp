@@ -91,12 +91,14 @@ void check_quantity(const pileus_quantity& q, const std::string& place, const Op
             "has an unknown merge or split rule");
   c.require(q.components >= 1 && q.components <= 9, place, "has no or too many components");
   constexpr std::uint32_t known =
-      PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD | PILEUS_OPTIONAL;
+      PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE | PILEUS_ADD | PILEUS_OPTIONAL | PILEUS_ON_DEMAND;
   c.require(q.access != 0 && (q.access & ~known) == 0, place, "has no or an unknown access");
   c.require(q.low <= q.high, place, "has a range whose low end is not below its high end");
   check_nature(q, place, c);
   c.require((q.access & PILEUS_OPTIONAL) == 0 || (q.access & PILEUS_CREATE) == 0, place,
             "is owned and optional at once: what is owned always exists");
+  c.require((q.access & PILEUS_ON_DEMAND) == 0 || q.nature == PILEUS_DERIVED, place,
+            "is given on demand, but not derived");
   if (q.place == PILEUS_MESH || q.place == PILEUS_MESH_AT_PARCEL) {
     c.require((q.access & ~(PILEUS_READ | PILEUS_OPTIONAL)) == 0, place,
               "lives on the mesh, which operators only read");

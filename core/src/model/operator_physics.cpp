@@ -13,6 +13,12 @@ const double* OperatorPhysics::buoyancy(parcels::Store& store, double time) {
   return store.scalar(buoyancy_scalar_);
 }
 
+const double* OperatorPhysics::buoyancy_of_stage(parcels::Store& store, double time) {
+  watch(store, time);
+  if (!sequence_.empty()) sequence_.diagnose_stage({step_, time, dt_});
+  return store.scalar(buoyancy_scalar_);
+}
+
 bool OperatorPhysics::apply_before(parcels::Store& store, double time, double dt,
                                    std::uint64_t step) {
   step_ = step;

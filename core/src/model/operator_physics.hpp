@@ -26,6 +26,7 @@ class OperatorPhysics final : public Physics {
   /// Throws Error (numerical) when an effect that was left out is called for and not to be
   /// switched on.
   const double* buoyancy(parcels::Store& store, double time) override;
+  const double* buoyancy_of_stage(parcels::Store& store, double time) override;
   bool apply_before(parcels::Store& store, double time, double dt, std::uint64_t step) override;
   void apply_after(parcels::Store& store, double time, double dt, std::uint64_t step) override;
   void population_changed() override;

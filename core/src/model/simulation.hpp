@@ -27,6 +27,8 @@ namespace pileus::model {
 /// What happens to the parcels besides transport: the planned operators.
 class Physics : public dynamics::BuoyancySource {
  public:
+  /// The buoyancy within a step, where nothing but the flow will be looked at.
+  virtual const double* buoyancy_of_stage(parcels::Store& store, double time) = 0;
   /// Operators before the stages of step number `step` of length `dt` from `time`; whether any ran.
   virtual bool apply_before(parcels::Store& store, double time, double dt, std::uint64_t step) = 0;
   /// Operators after the stages.

@@ -359,7 +359,9 @@ template <int D>
 StepReport SimulationOf<D>::finish_step() {
   StepReport report;
   report.dt = dt_;
+  buoyancy_.within_a_step = true;
   transport_->finish_step(*store_, buoyancy_, tile_begin_, wind_, time_, dt_, times_);
+  buoyancy_.within_a_step = false;
   {
     const PhaseScope scope(times_, Phase::operators);
     buoyancy_.physics.apply_after(*store_, time_, dt_, step_);

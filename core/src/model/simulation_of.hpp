@@ -58,9 +58,11 @@ class SimulationOf final : public Simulation {
   struct TracedBuoyancy final : dynamics::BuoyancySource {
     explicit TracedBuoyancy(Physics& p) : physics(p) {}
     const double* buoyancy(parcels::Store& store, double time) override {
-      return last = physics.buoyancy(store, time);
+      return last = within_a_step ? physics.buoyancy_of_stage(store, time)
+                                  : physics.buoyancy(store, time);
     }
     Physics& physics;
+    bool within_a_step = false;
     const double* last = nullptr;
   };
 

@@ -126,6 +126,47 @@ class Condenser : public Operator<Condenser> {
   Slot buoyancy, liquid;
 };
 
+/// Derives a buoyancy of the height and, on demand, a temperature of it; counts how often.
+class Thermometer : public Operator<Thermometer> {
+ public:
+  static inline std::atomic<int> buoyancies = 0, temperatures = 0;
+  void describe(Declaration& d) {
+    introduce(d, "test.thermometer");
+    d.op.form = PILEUS_CLOSURE;
+    d.provides("buoyancy");
+    height = d.reads("height", "m");
+    buoyancy = d.derives("buoyancy", "m s-2");
+    temperature = d.derives("air_temperature", "K").on_demand();
+  }
+  void diagnose(const pileus_step&, Block block) const {
+    std::copy_n(block.in(height), block.count(), block.out(buoyancy));
+    ++buoyancies;
+    if (!block.has(temperature)) return;
+    std::copy_n(block.in(height), block.count(), block.out(temperature));
+    ++temperatures;
+  }
+
+ private:
+  Slot height, buoyancy, temperature;
+};
+
+/// Derives a humidity from the temperature.
+class Hygrometer : public Operator<Hygrometer> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.hygrometer");
+    d.op.form = PILEUS_CLOSURE;
+    temperature = d.reads("air_temperature", "K");
+    humidity = d.derives("relative_humidity", "1");
+  }
+  void diagnose(const pileus_step&, Block block) const {
+    std::copy_n(block.in(temperature), block.count(), block.out(humidity));
+  }
+
+ private:
+  Slot temperature, humidity;
+};
+
 /// Counts its calls and provides one effect.
 class Counter : public Operator<Counter> {
  public:

@@ -98,7 +98,7 @@ TEST(TwoMomentOperator, skips_clear_air_below_saturation_and_changes_nothing_by_
   const auto a = bits_of(skipping), b = bits_of(calling);
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
   // Half of the parcels never saturate; the others do after part of the ascent.
-  const auto& ledger = skipping.sequence.ledger().operators.front();
+  const OperatorLedger ledger = skipping.sequence.ledger().operators.front();
   EXPECT_GE(ledger.skipped(), 20u * 1500u);
   EXPECT_LT(ledger.skipped(), 20u * 3000u);
   EXPECT_GT(*std::max_element(skipping.values(cloud_name), skipping.values(cloud_name) + 3000),
