@@ -91,7 +91,8 @@ std::optional<double> Record::statistic(std::size_t diagnostic, const std::strin
   if (name == "max") return *std::max_element(begin, stop);
   if (name == "mean") return mean_of({begin, stop});
   if (name == "mean_deviation") return mean_deviation({begin, stop});
-  if (name == "relative_change") return (end - *begin) / std::abs(*begin);
+  if (name == "relative_change")  // nothing that stays nothing has not changed
+    return end == *begin ? 0.0 : (end - *begin) / std::abs(*begin);
   if (name == "relative_rise") return (*std::max_element(begin, stop) - *begin) / std::abs(*begin);
   if (name == "growth_rate") {
     const auto at = static_cast<std::size_t>(skipped), n = static_cast<std::size_t>(count);

@@ -125,9 +125,11 @@ std::string conservation_table(const Summary& s) {
   std::string text;
   for (const DiagnosticSummary& one : s.diagnostics)
     if (one.relative_change)
-      text +=
-          fmt::format("  {:<28}{:>16}{:>16}{:>12}  {}\n", one.name, number(one.initial),
-                      number(one.final), fmt::format("{:.2e}", *one.relative_change), one.units);
+      text += fmt::format(
+          "  {:<28}{:>16}{:>16}{:>12}  {}\n", one.name, number(one.initial), number(one.final),
+          std::isfinite(*one.relative_change) ? fmt::format("{:.2e}", *one.relative_change)
+                                              : std::string("n/a"),
+          one.units);
   if (!text.empty())
     text = fmt::format("\n  {:<28}{:>16}{:>16}{:>12}  {}\n", "conserved", "initial", "final",
                        "rel. change", "units") +

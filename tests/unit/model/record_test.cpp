@@ -26,6 +26,7 @@ TEST(Record, StatisticsOfTheWholeRun) {
   EXPECT_EQ(record.statistic(0, "max", {}), 3.0);
   EXPECT_EQ(record.statistic(0, "mean", {}), 2.0);
   EXPECT_EQ(record.statistic(0, "relative_change", {}), 0.5);
+  EXPECT_EQ(record.statistic(1, "relative_change", 10.0), 0.0) << "nothing that stayed nothing";
   EXPECT_EQ(record.statistic(1, "first_time_above", {}), 30.0);
   EXPECT_FALSE(record.statistic(0, "median", {}).has_value());
 }
