@@ -34,9 +34,8 @@ class MeshAccess {
 
   /// Wraps positions sideways and reflects them at the walls, after an operator moved parcels.
   virtual void confine() = 0;
-  /// Restores the volumes of the shapes and blunts those too long to compute with, after an
-  /// operator deformed parcels.
-  virtual void close_shapes() = 0;
+  /// Blunts shapes too long to compute with, after an operator deformed parcels.
+  virtual void blunt_shapes() = 0;
 };
 
 }  // namespace pileus::coupling

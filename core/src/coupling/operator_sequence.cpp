@@ -251,57 +251,12 @@ void OperatorSequence::touch_core() {
   std::fill_n(versions_.begin(), store_->first_scalar(), next_version_++);
 }
 
-void OperatorSequence::diagnose(const StepTime& step) {
-  touch_core();
-  refresh(step, Derived::all);
-}
-
-void OperatorSequence::diagnose_stage(const StepTime& step) {
-  touch_core();
-  refresh(step, Derived::within_a_step);
-}
-
 /// What transport and upkeep move from here on is the ascent that the next calls account for.
 void OperatorSequence::remember_heights() {
   if (previous_height_ < 0) return;
   const double* height = store_->position(store_->dimension() - 1);
   std::copy_n(height, store_->size(), store_->column(previous_height_));
   versions_[static_cast<std::size_t>(previous_height_)] = next_version_++;
-}
-
-/// Runs the closures whose inputs have changed since they last ran, and those that depend on them.
-void OperatorSequence::refresh(const StepTime& step, Derived what) {
-  clear_withheld();
-  stale_.clear();
-  for (const std::size_t which : plan_.closures) {
-    const BoundOperator& bound = bound_[which];
-    if (bound.dormant) continue;
-    const std::uint64_t version = version_of(bound.read_columns);
-    OperatorProgress& progress = progress_[which];
-    if (version <= (what == Derived::all ? progress.demanded_at : progress.diagnosed_at)) continue;
-    progress.diagnosed_at = version;
-    if (what == Derived::all) progress.demanded_at = version;
-    for (const std::size_t s : bound.derived) {
-      if (is_left_out(bound.slots[s], what)) continue;
-      versions_[static_cast<std::size_t>(bound.slots[s].column)] = next_version_;
-    }
-    ++next_version_;
-    stale_.push_back(which);
-  }
-  if (!stale_.empty()) run_closures(step, what);
-}
-
-/// Block by block, all closures of a block one after another while its columns are in the cache.
-void OperatorSequence::run_closures(const StepTime& step, Derived what) {
-  match_threads();
-  parallel_tasks(block_count(), [&](std::size_t block) {
-    Workspace& work = workspaces_[static_cast<std::size_t>(omp_get_thread_num())];
-    for (const std::size_t which : stale_) {
-      const pileus_step record = step_record(bound_[which], step, false);
-      if (!runner_->diagnose(which, record, block_range(block), what, work)) return;
-    }
-  });
-  throw_first_failure();
 }
 
 bool OperatorSequence::splits_around_transport() const {
@@ -383,7 +338,7 @@ int OperatorSequence::prepare(std::size_t which, const StepTime& at, bool second
   if (bound.op().prepare == nullptr) return std::max(wanted, 1);
   double limit = std::numeric_limits<double>::infinity();
   const pileus_step record = step_record(bound, at, second_half);
-  pileus_block whole = runner_->block(which, all_parcels(), false, whole_);
+  pileus_block whole = runner_->block(which, all_parcels(), Derived::none, whole_);
   for (pileus_view& view : whole_.views[which]) view.access = PILEUS_READ;
   host::CallResult result = bound.instance->prepare(record, whole, limit);
   if (result.ok() && !(limit > 0)) {
@@ -430,7 +385,7 @@ void OperatorSequence::apply_once(std::size_t which, const pileus_step& step) {
   throw_first_finding();
   if (mesh_quantities_ != nullptr) {
     if (bound.moves_parcels) mesh_quantities_->access().confine();
-    if (bound.deforms_parcels) mesh_quantities_->access().close_shapes();
+    if (bound.deforms_parcels) mesh_quantities_->access().blunt_shapes();
   }
   close_books(which, blocks);
 }

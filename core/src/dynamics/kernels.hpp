@@ -52,8 +52,8 @@ struct GivenStageJob : StageJob<D> {
   const double* gradient[StageJob<D>::gradient_components];
 };
 
-/// Closes the shapes of parcels [begin, end), begin a multiple of 8, as the last stage does: det B
-/// = (V/V₁)², and none longer than the limit.
+/// Blunts the shapes of parcels [begin, end), begin a multiple of 8, that the last stage would:
+/// those longer than the limit or not positive definite. Others are left as they are.
 template <int D>
 struct ShapeJob {
   double* shape[StageJob<D>::shape_components];
@@ -68,8 +68,8 @@ struct Kernels {
   void (*stage_2d)(StageJob<2>&);
   void (*given_stage_3d)(GivenStageJob<3>&);
   void (*given_stage_2d)(GivenStageJob<2>&);
-  void (*close_shapes_3d)(ShapeJob<3>&);
-  void (*close_shapes_2d)(ShapeJob<2>&);
+  void (*blunt_shapes_3d)(ShapeJob<3>&);
+  void (*blunt_shapes_2d)(ShapeJob<2>&);
 };
 
 const Kernels& kernels();

@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::size_t read_ahead = 8;
 
-void run_closing(ShapeJob<3>& job) {
-  kernels().close_shapes_3d(job);
+void run_blunting(ShapeJob<3>& job) {
+  kernels().blunt_shapes_3d(job);
 }
-void run_closing(ShapeJob<2>& job) {
-  kernels().close_shapes_2d(job);
+void run_blunting(ShapeJob<2>& job) {
+  kernels().blunt_shapes_2d(job);
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ StageJob<D> ParcelMotion<D>::stage_job(parcels::Store& store, std::size_t s, dou
 }
 
 template <int D>
-void ParcelMotion<D>::close_shapes(parcels::Store& store) {
+void ParcelMotion<D>::blunt_shapes(parcels::Store& store) {
   ShapeJob<D> whole{};
   for (int c = 0; c < StageJob<D>::shape_components; ++c) whole.shape[c] = store.shape(c);
   whole.size_volume = store.size_volume();
@@ -130,7 +130,7 @@ void ParcelMotion<D>::close_shapes(parcels::Store& store) {
         ShapeJob<D> job = whole;
         job.begin = begin;
         job.end = end;
-        run_closing(job);
+        run_blunting(job);
         return job.broken;
       },
       [](std::size_t a, std::size_t b) { return a + b; });

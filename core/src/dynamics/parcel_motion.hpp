@@ -61,9 +61,9 @@ class ParcelMotion {
                            const std::vector<std::size_t>& tile_begin, MeanWind& wind, double time,
                            double dt, PhaseTimes& times) = 0;
 
-  /// Restores det B of every parcel and blunts shapes that are too long, as a step does at its end:
-  /// after somebody else deformed parcels.
-  void close_shapes(parcels::Store& store);
+  /// Blunts shapes that are too long to compute with, as a step does at its end: after somebody
+  /// else deformed parcels.
+  void blunt_shapes(parcels::Store& store);
 
   /// Gives the parcels the velocity of the evaluated flow without moving them, for velocity().
   virtual void probe(parcels::Store& store, PhaseTimes& times) = 0;

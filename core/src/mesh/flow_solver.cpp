@@ -72,7 +72,10 @@ void FlowSolver<D>::solve(const double* deposited, std::array<double, 2> mean_wi
     stages_->invert(deposited, mean_wind, flow, summary);
   }
   const PhaseScope scope(times, Phase::tendency);
-  stages_->tendency.solve(deposited, flow, summary);
+  if constexpr (D == 3)
+    stages_->tendency.solve(deposited, mean_wind, flow, summary);
+  else
+    stages_->tendency.solve(deposited, flow, summary);
 }
 
 template <int D>

@@ -69,7 +69,9 @@ std::size_t Tendency3D::allocated_bytes() const {
   return y_flux_.allocated_bytes() + scratch_.allocated_bytes();
 }
 
-void Tendency3D::solve(const double* deposited, double* flow, FlowSummary* summary) {
+void Tendency3D::solve(const double* deposited, const std::array<double, 2>& mean_wind,
+                       double* flow, FlowSummary* summary) {
+  mean_wind_ = mean_wind;
   scratch_.reserve();
   parallel_tasks(std::size_t(grid_.ny()), [&](std::size_t j) {
     row_summary_[j] = {};
@@ -89,6 +91,7 @@ void Tendency3D::solve(const double* deposited, double* flow, FlowSummary* summa
 void Tendency3D::flux_columns(const double* deposit, const double* flow, double* x_flux,
                               double* y_flux, double* z_flux) const {
   const auto [f_x, f_y, f_z] = options_.planetary_vorticity;
+  const auto [mean_u, mean_v] = mean_wind_;
   const std::size_t pitch = column_pitch(grid_.nz());
   const int levels = levels_;
   for (int k = 0; k <= grid_.nz(); ++k) {
@@ -98,13 +101,13 @@ void Tendency3D::flux_columns(const double* deposit, const double* flow, double*
     const double eta = r[Flow::u_z] - r[Flow::w_x] + f_y;
     const double zeta = r[Flow::v_x] - r[Flow::u_y] + f_z;
     x_flux[k] = xi * r[Flow::u];
-    x_flux[levels + k] = (r[Flow::w_y] + f_x) * r[Flow::v] - b;
+    x_flux[levels + k] = (r[Flow::w_y] + f_x) * r[Flow::v] - mean_v * r[Flow::v_z] - b;
     x_flux[2 * levels + k] = (f_x - r[Flow::v_z]) * r[Flow::w];
-    y_flux[k] = (f_y - r[Flow::w_x]) * r[Flow::u] + b;
+    y_flux[k] = (f_y - r[Flow::w_x]) * r[Flow::u] + mean_u * r[Flow::u_z] + b;
     y_flux[levels + k] = eta * r[Flow::v];
     y_flux[2 * levels + k] = (r[Flow::u_z] + f_y) * r[Flow::w];
-    z_flux[std::size_t(k)] = (r[Flow::v_x] + f_z) * r[Flow::u];
-    z_flux[pitch + std::size_t(k)] = (f_z - r[Flow::u_y]) * r[Flow::v];
+    z_flux[std::size_t(k)] = (r[Flow::v_x] + f_z) * r[Flow::u] - mean_u * r[Flow::u_y];
+    z_flux[pitch + std::size_t(k)] = (f_z - r[Flow::u_y]) * r[Flow::v] + mean_v * r[Flow::v_x];
     z_flux[2 * pitch + std::size_t(k)] = zeta * r[Flow::w];
   }
   if (levels > grid_.nz() + 1)

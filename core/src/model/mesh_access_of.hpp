@@ -52,7 +52,7 @@ class MeshAccessOf final : public coupling::MeshAccess {
   }
 
   void confine() override { parcels::confine<D>(in_.store, in_.grid); }
-  void close_shapes() override { in_.transport->close_shapes(in_.store); }
+  void blunt_shapes() override { in_.transport->blunt_shapes(in_.store); }
 
  private:
   Parts in_;

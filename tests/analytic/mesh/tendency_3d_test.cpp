@@ -97,7 +97,7 @@ TEST(Tendency3D, AJetDoesNotTurnAboutItsOwnAxis) {
       r[velocity[along]] = uniform(engine);
       for (const int gradient : across[along]) r[gradient] = uniform(engine);
     });
-    Tendency3D(grid, FlowOptions{}).solve(s.deposited.data(), s.flow.data(), nullptr);
+    Tendency3D(grid, FlowOptions{}).solve(s.deposited.data(), {}, s.flow.data(), nullptr);
     EXPECT_EQ(s.error(Flow::tendency + along, -1, grid.nz() + 1, [](const Vector&) { return 0.0; }),
               0)
         << along;

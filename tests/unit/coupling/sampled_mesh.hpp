@@ -60,7 +60,7 @@ class SampledMesh final : public coupling::MeshAccess {
           flow_(names_[static_cast<std::size_t>(which)], node);
   }
   void confine() override { parcels::confine<D>(store_, grid_); }
-  void close_shapes() override {}
+  void blunt_shapes() override {}
 
   int deposits = 0, evaluations = 0;
 

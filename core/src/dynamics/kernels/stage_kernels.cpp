@@ -316,24 +316,30 @@ void given_stage_2d(GivenStageJob<2>& job) {
   }
 }
 
-void close_shapes_3d(ShapeJob<3>& job) {
+void blunt_shapes_3d(ShapeJob<3>& job) {
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = std::min<std::size_t>(job.end - p, lanes);
     const Symmetric3<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
                              load(job.shape[2] + p), load(job.shape[3] + p),
                              load(job.shape[4] + p), load(job.shape[5] + p)};
-    store_shape(job.shape, p,
-                close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken));
+    std::size_t broken = 0;
+    const Symmetric3<Pack> closed =
+        close_shape(b, load(job.size_volume + p), count, job.aspect_limit, broken);
+    if (broken > 0) store_shape(job.shape, p, closed);
+    job.broken += broken;
   }
 }
 
-void close_shapes_2d(ShapeJob<2>& job) {
+void blunt_shapes_2d(ShapeJob<2>& job) {
   for (std::size_t p = job.begin; p < job.end; p += lanes) {
     const std::size_t count = std::min<std::size_t>(job.end - p, lanes);
     const Symmetric2<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
                              load(job.shape[2] + p)};
-    store_shape(job.shape, p,
-                close_shape(b, load(job.size_volume + p), count, job.aspect_limit, job.broken));
+    std::size_t broken = 0;
+    const Symmetric2<Pack> closed =
+        close_shape(b, load(job.size_volume + p), count, job.aspect_limit, broken);
+    if (broken > 0) store_shape(job.shape, p, closed);
+    job.broken += broken;
   }
 }
 
@@ -343,7 +349,7 @@ const dynamics::Kernels dynamics_kernels = {.stage_3d = stage_3d,
                                             .stage_2d = stage_2d,
                                             .given_stage_3d = given_stage_3d,
                                             .given_stage_2d = given_stage_2d,
-                                            .close_shapes_3d = close_shapes_3d,
-                                            .close_shapes_2d = close_shapes_2d};
+                                            .blunt_shapes_3d = blunt_shapes_3d,
+                                            .blunt_shapes_2d = blunt_shapes_2d};
 
 }  // namespace pileus::PILEUS_ISA
