@@ -36,7 +36,10 @@ OTHERS = [
     ("diluted_20", "growth and dilution", "moist_thermal_diluted", COARSE),
     ("overlap_20", "overlap exchange", "moist_thermal_overlap", COARSE),
 ]
-RUNS = NUDGED + DILUTED + OTHERS
+VORTICITY_TOO = [(f"vorticity_{beta}", f"β = {beta}, vorticity too", "moist_thermal_nudged",
+                  [f"operators.mixing.beta={beta}", "operators.mixing.mix_vorticity=true",
+                   f"operators.mixing.beta_vorticity={beta}"]) for beta in ("0.3", "1", "3")]
+RUNS = NUDGED + DILUTED + OTHERS + VORTICITY_TOO
 # The published runs take steps of 0.2 over the strain rate, too.
 AUTHORS_STEP = ["time.step.alpha=0.2", "time.step.strain_alpha=0.2"]
 PUBLISHED = ["EPIC", "MPIC", "MONC"]

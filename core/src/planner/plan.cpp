@@ -59,8 +59,9 @@ class Judge {
     if (wanted) {
       effect.verdict = Verdict::off;
       effect.evidence = Evidence::exact;
-      effect.reason = "no operator of the scene provides it" +
-                      (effect.number ? "; " + effect.reason : std::string());
+      effect.reason = effect.number
+                          ? "called for, but no operator of the scene provides it: " + effect.reason
+                          : "no operator of the scene provides it";
     }
   }
 
