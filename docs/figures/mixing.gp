@@ -18,15 +18,15 @@ set datafile missing "?"
 set style data steps
 do for [format in "svg png"] {
   if (format eq "svg") {
-    set terminal svg size 900,760 font "sans,13" background "white"
+    set terminal svg size 1080,760 font "sans,13" background "white"
   } else {
-    set terminal pngcairo size 900,760 font "sans,11"
+    set terminal pngcairo size 1080,760 font "sans,11"
   }
   set output sprintf("docs/images/mixing.%s", format)
-  set multiplot layout 2,1 margins 0.09,0.98,0.08,0.95 spacing 0,0.11
+  set multiplot layout 2,1 margins 0.07,0.76,0.08,0.95 spacing 0,0.11
   set xrange [0.002:0.08]
   set yrange [0:1.6]
-  set key at graph 0.5, 0.97 right top
+  set key at graph 1.02, 1.0 left top Left reverse
   set ylabel "density"
   unset xlabel
   set title "Grid nudging, growth and dilution: liquid water after 600 s, 32^3 cells"
