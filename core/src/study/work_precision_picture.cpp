@@ -1,11 +1,13 @@
 #include "study/work_precision_picture.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace pileus::study {
 
@@ -40,8 +42,27 @@ struct LogRange {
     if (!known()) return fmt::format("set {}range [*:*]\n", axis);
     const double room = std::max(std::pow(high / low, 0.08), 1.3);
     const bool decades = high / low > 30;
-    return fmt::format("set {0}range [{1:.4g}:{2:.4g}]\nset format {0} '{3}'\n", axis, low / room,
-                       high * room, decades ? "10^{%T}" : "%g");
+    return fmt::format("set {0}range [{1:.4g}:{2:.4g}]\nset format {0} '{3}'\nset {0}tics {4}\n",
+                       axis, low / room, high * room, decades ? "10^{%T}" : "%g",
+                       decades ? "autofreq" : within_a_decade(low / room, high * room));
+  }
+
+ private:
+  /// Round numbers between the ends of an axis on which hardly a power of ten may lie: 1, 2 and 5,
+  /// or, where fewer than three of those do, multiples of one round step.
+  static std::string within_a_decade(double from, double to) {
+    std::vector<double> at;
+    for (double decade = std::pow(10.0, std::floor(std::log10(from))); decade <= to; decade *= 10)
+      for (const double digit : {1.0, 2.0, 5.0})
+        if (digit * decade >= from && digit * decade <= to) at.push_back(digit * decade);
+    if (at.size() < 3) {
+      at.clear();
+      const double wanted = (to - from) / 4,
+                   decade = std::pow(10.0, std::floor(std::log10(wanted)));
+      const double step = decade * (wanted >= 5 * decade ? 5 : wanted >= 2 * decade ? 2 : 1);
+      for (double n = std::ceil(from / step); n * step <= to; ++n) at.push_back(n * step);
+    }
+    return fmt::format("({:.6g})", fmt::join(at, ", "));
   }
 };
 

@@ -166,5 +166,19 @@ TEST(DurationModel, OneRunIsTheExpectationOfAll) {
   EXPECT_NEAR(*model.predict({3}), 12, 1e-9);
 }
 
+/// Powers of ten alone would leave such an axis without a number.
+TEST(WorkPrecision, AxesWithinADecadeHaveNumbers) {
+  const std::string narrow =
+      work_precision_script(findings_of({8, 4, 2}, {0.0356, 0.0383, 0.0399}, {1, 10, 100}), 0);
+  EXPECT_NE(narrow.find("set ytics (0.03, 0.035, 0.04, 0.045, 0.05)"), std::string::npos) << narrow;
+  EXPECT_NE(narrow.find("set xtics autofreq"), std::string::npos);
+  const std::string wider =
+      work_precision_script(findings_of({8, 4, 2}, {0.03, 0.1, 0.4}, {1, 10, 100}), 0);
+  EXPECT_NE(wider.find("set ytics (0.05, 0.1, 0.2, 0.5)"), std::string::npos) << wider;
+  const std::string decades =
+      work_precision_script(findings_of({8, 4, 2}, {1e-3, 0.1, 0.4}, {1, 10, 100}), 0);
+  EXPECT_NE(decades.find("set ytics autofreq"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pileus::study
