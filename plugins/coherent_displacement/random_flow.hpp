@@ -108,6 +108,7 @@ class RandomFlow {
       xi = xi > 0 ? std::fmin(xi, n) : 0.0;
     else
       xi -= n * std::floor(xi / n);
+    if (!(xi >= 0 && xi <= n)) xi = 0;  // a broken position, which the core is about to notice
     return Spline(xi);
   }
 

@@ -32,6 +32,24 @@ operators:
   - {use: org.pileus.rain_sedimentation, name: fall}
 output: {fields: {every: 50 s}, parcels: {every: 100 s}}
 """
+# Cold and warm air, both too dry for a cloud, that mix to fog without moving.
+FOG = """\
+scene: {name: fog, title: Cold and warm air that mix to fog}
+domain: {extent: [800 m, 400 m], cells: [8, 8]}
+time: {end: 40 s, step: {fixed: 2 s}}
+formulas:
+  T: 'x < 400 ? 275 : 300'
+  vapour: 611.2*exp(17.67*(T - 273.15)/(T - 29.65))
+initial:
+  air_potential_temperature: T
+  specific_humidity: 0.66*0.622*vapour/(100000 - 0.378*vapour)
+operators:
+  - {use: org.pileus.grid_nudging, name: mixing, beta: 10}
+  - {use: org.pileus.two_moment, name: clouds, activation: twomey, twomey_coefficient: 100 cm-3,
+     twomey_exponent: 0, buoyancy_temperature: 290 K, reference_height: [0 m],
+     reference_potential_temperature: [290 K]}
+output: {series: {every: 100 s}}
+"""
 # The same air so moist that it saturates on the way.
 MOIST_DROPS = {"initial.specific_humidity": "0.0130 + 0.0045*shape", "time.end": "300 s"}
 RAIN = ("mass_fraction_of_rain_in_air", "number_of_raindrops_per_mass_of_air")
@@ -133,6 +151,34 @@ class EffectsProgramTest(ProgramTest):
         self.assertRegex(reason, r"switched on at t = [0-9.]+ s, step [1-9][0-9]")
         self.assertEqual(watched.summary["state_sha256"], on.summary["state_sha256"])
         self.assertGreater(on.diagnostic("max_liquid_water")["final"], 1e-5)
+
+    def test_what_one_operator_calls_for_another_does_in_the_same_step(self):
+        scene = self.write("fog.yaml", FOG)
+        for order in ("[clouds, mixing]", "[mixing, clouds]"):
+            for scheme in ("lie", "strang"):
+                with self.subTest(order=order, scheme=scheme):
+                    values = {"coupling.order": order, "coupling.scheme": scheme}
+                    runs = [self.run_well(scene, f"{word} {order} {scheme}",
+                                          values | {"effects.condensation": word})
+                            for word in ("on", "watch")]
+                    self.assertEqual(*(run.summary["state_sha256"] for run in runs))
+                    self.assertIn("switched on", runs[1].summary["effects"]["condensation"]["reason"])
+                    self.assertGreater(runs[0].diagnostic("max_liquid_water")["final"], 1e-6)
+
+    def test_costs_are_measured_where_the_scene_lists_its_effects(self):
+        """A cache that others have damaged costs no run its summary."""
+        scene = self.write("dry.yaml", DROPS + "effects: [buoyancy]\n")
+        cache = self.folder / "cache"
+        for _ in range(2):
+            ended = subprocess.run(
+                [PROGRAM, "plan", str(scene), "--measure"], capture_output=True, text=True,
+                env=environment(XDG_CACHE_HOME=cache), check=False)
+            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+            self.assertIn("left out", ended.stdout)
+            self.assertNotIn("its time has not been measured", ended.stdout)
+            [costs] = (cache / "pileus").glob("costs-*.json")
+            costs.write_text('{"core 2 rk4": {"core_seconds_per_parcel_step": null, "when": 3}}')
+        self.run_well(scene, values={"time.max_steps": 2}, env={"XDG_CACHE_HOME": cache})
 
     def test_rain_left_out_on_demand_has_no_arrays(self):
         scene = self.write("drops.yaml", DROPS)

@@ -18,6 +18,17 @@ BUSY_WAVE = {"domain.cells": "[16, 16, 4]", "time.end": "4", "output.checkpoint.
              "output.fields.every": "0.4", "output.parcels.every": "1",
              "output.profiles.every": "0.3", "output.series.every": "0.05"}
 RESUME = ("--threads", "1", "--resume")
+# An operator that takes one sub-step and asks for far shorter steps than the flow.
+DISPLACED = """\
+scene: {name: displaced, title: Parcels displaced by a random flow}
+domain: {extent: [1 m, 1 m], cells: [8, 8]}
+time: {end: 1 s, step: {largest: 0.2 s}}
+initial: {buoyancy: '0.01*sin(2*pi*x)'}
+operators:
+  - {use: org.pileus.coherent_displacement, name: displacement, intensity: constant,
+     diffusivity: 0.05 m2/s, substeps: 1}
+output: {series: {every: 10 s}, checkpoint: {steps: 1}}
+"""
 MOST_KILLS = 40
 
 
@@ -112,6 +123,16 @@ class Restart(ProgramTest):
         whole, took = self.timed(MIXING_THERMAL, values)
         resumed, _ = self.kill_and_resume(MIXING_THERMAL, values, self.random_moments(13, took))
         self.assert_equal_runs(resumed, whole)
+
+    def test_limit_of_an_operator_is_remembered(self):
+        """The step that an operator asked for before the run was interrupted still holds after."""
+        scene = self.write("displaced.yaml", DISPLACED)
+        whole = self.run_well(scene, "whole")
+        self.assertGreater(whole.summary["steps"], 30)  # 5 by the flow alone
+        self.run_scene(scene, "stopped", {"time.max_steps": 5})
+        resumed = self.run_well(scene, "stopped", options=RESUME)
+        for what in ("steps", "state_sha256"):
+            self.assertEqual(resumed.summary[what], whole.summary[what])
 
     def test_killed_while_writing(self):
         """In the middle of a change of a file: every one of a stretch that holds a checkpoint, and

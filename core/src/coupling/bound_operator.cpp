@@ -155,8 +155,13 @@ void keep_what_closures_read(std::vector<BoundOperator>& operators) {
     });
   };
   for (BoundOperator& bound : operators)
-    for (BoundSlot& slot : bound.slots)
-      slot.on_demand = slot.on_demand && slot.column >= 0 && !is_read(slot.column);
+    for (std::size_t i = 0; i < bound.slots.size(); ++i) {
+      BoundSlot& slot = bound.slots[i];
+      const bool drives_the_flow =
+          std::string_view(bound.entry->table->quantities[i].name) == buoyancy_name;
+      slot.on_demand =
+          slot.on_demand && slot.column >= 0 && !drives_the_flow && !is_read(slot.column);
+    }
 }
 
 void follow_effects(BoundOperator& bound) {

@@ -64,7 +64,7 @@ struct BoundOperator {
   bool is_local() const { return op().scope == PILEUS_LOCAL; }
 };
 
-/// What one closure derives and another reads is needed within a step, too.
+/// What one closure derives and another reads is needed within a step, too, and so is the buoyancy.
 void keep_what_closures_read(std::vector<BoundOperator>& operators);
 
 /// Takes over which effects of the entry are on: at the start, and when one is switched on.

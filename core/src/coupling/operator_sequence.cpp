@@ -266,20 +266,26 @@ bool OperatorSequence::splits_around_transport() const {
   return false;
 }
 
-void OperatorSequence::apply_before_transport(const StepTime& step) {
+void OperatorSequence::apply_before_transport(const StepTime& step,
+                                              const BetweenOperators& between) {
   if (options_.coupling.scheme != scene::Coupling::Scheme::strang) return;
+  bool first = true;
   for (const std::size_t which : order_) {
     const std::uint32_t form = bound_[which].op().form;
     if (form != PILEUS_FLOW) continue;  // projections and observers act once, at the end
+    if (!first && between) between();
+    first = false;
     apply(which, {step.number, step.time, 0.5 * step.dt}, false);
   }
   remember_heights();
 }
 
-void OperatorSequence::apply_after_transport(const StepTime& step) {
+void OperatorSequence::apply_after_transport(const StepTime& step,
+                                             const BetweenOperators& between) {
   const bool strang = options_.coupling.scheme == scene::Coupling::Scheme::strang;
   if (!order_.empty()) touch_core();
   for (auto which = order_.rbegin(); which != order_.rend(); ++which) {
+    if (which != order_.rbegin() && between) between();
     if (strang && bound_[*which].op().form == PILEUS_FLOW) {
       apply(*which, {step.number, step.time + 0.5 * step.dt, 0.5 * step.dt}, true);
     } else {
@@ -304,7 +310,8 @@ bool OperatorSequence::skip_by_epoch(std::size_t which) {
 void OperatorSequence::apply(std::size_t which, const StepTime& at, bool second_half) {
   if (bound_[which].dormant || bound_[which].idle) return;
   refresh(at, Derived::all);
-  if (skip_by_epoch(which)) {
+  // An operator with a limit of its own is asked for it whether or not it is skipped.
+  if (bound_[which].op().prepare == nullptr && skip_by_epoch(which)) {
     audit_idle(which, step_record(bound_[which], at, second_half));
     return;
   }

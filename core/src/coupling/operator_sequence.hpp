@@ -6,6 +6,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -100,11 +101,14 @@ class OperatorSequence {
   void diagnose_stage(const StepTime& step);
   /// Whether apply_before_transport does anything: some operator advances in half steps.
   bool splits_around_transport() const;
+  /// Called between two operators of one pass: what the first wrote may call for an effect of the
+  /// next that waits to be switched on.
+  using BetweenOperators = std::function<void()>;
   /// Operators before the transport of a step (Strang only).
-  void apply_before_transport(const StepTime& step);
+  void apply_before_transport(const StepTime& step, const BetweenOperators& between = {});
   /// Operators after the transport of a step. Derived quantities are up to date with what the
   /// operators read, but need `diagnose` afterwards.
-  void apply_after_transport(const StepTime& step);
+  void apply_after_transport(const StepTime& step, const BetweenOperators& between = {});
   /// To be called after merge, split, sort: parcels are other ones than before.
   void population_changed();
 
@@ -116,7 +120,8 @@ class OperatorSequence {
 
   /// Costs, counts and budgets since the start.
   Ledger ledger() const;
-  /// The accumulated budgets as plain numbers for a checkpoint, and back after bind.
+  /// The accumulated budgets and the operators' limits of the step as plain numbers for a
+  /// checkpoint, and back after bind.
   std::vector<double> books() const;
   void restore_books(const std::vector<double>& books);
 

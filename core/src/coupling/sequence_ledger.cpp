@@ -87,6 +87,7 @@ std::vector<double> OperatorSequence::books() const {
       }
     }
   }
+  for (const OperatorProgress& progress : progress_) numbers.push_back(progress.step_limit);
   return numbers;
 }
 
@@ -101,6 +102,8 @@ void OperatorSequence::restore_books(const std::vector<double>& books) {
       }
     }
   }
+  for (OperatorProgress& progress : progress_)
+    if (at < books.size()) progress.step_limit = books[at++];
 }
 
 }  // namespace pileus::coupling

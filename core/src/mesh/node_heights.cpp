@@ -19,23 +19,27 @@ void refer_column(const Grid<D>& grid, double* column) {
   using Record = DepositRecord<D>;
   const int top = grid.nz();
   const auto at = [&](int k) { return column + std::ptrdiff_t(k) * Record::width; };
-  double below = at(0)[Record::buoyancy];  // of the level below, as gathered
+  double below = 0, height_below = 0;  // of the level below, as gathered
   for (int k = 0; k <= top; ++k) {
     double* node = at(k);
-    const double gathered = node[Record::buoyancy];
-    const int low = k > 0 && at(k - 1)[Record::volume] > 0 ? k - 1 : k;
-    const int high = k < top && at(k + 1)[Record::volume] > 0 ? k + 1 : k;
-    if (low != high && node[Record::volume] > 0) {
+    const double gathered = node[Record::buoyancy], height = node[mean_height<D>];
+    const bool has_low = k > 0 && at(k - 1)[Record::volume] > 0;
+    const bool has_high = k < top && at(k + 1)[Record::volume] > 0;
+    if ((has_low || has_high) && node[Record::volume] > 0) {
       const double difference =
-          (high > k ? at(high)[Record::buoyancy] : gathered) - (low < k ? below : gathered);
-      const double apart = at(high)[mean_height<D>] - at(low)[mean_height<D>];
+          (has_high ? at(k + 1)[Record::buoyancy] : gathered) - (has_low ? below : gathered);
+      const double apart =
+          (has_high ? at(k + 1)[mean_height<D>] : height) - (has_low ? height_below : height);
       // What neighbouring nodes gathered may lie close together; then the slope is that over the
       // least distance told apart, half of the mesh's own.
-      const double least = 0.5 * (node_height(grid, high) - node_height(grid, low));
+      const double least =
+          0.5 * (node_height(grid, has_high ? k + 1 : k) - node_height(grid, has_low ? k - 1 : k));
       const double slope = difference / std::max(apart, least);
-      node[Record::buoyancy] = gathered - (node[mean_height<D>] - node_height(grid, k)) * slope;
+      node[Record::buoyancy] = gathered - (height - node_height(grid, k)) * slope;
     }
+    node[gathered_buoyancy<D>] = gathered;
     below = gathered;
+    height_below = height;
   }
 }
 

@@ -19,9 +19,13 @@ namespace pileus::mesh {
 /// Lane of a deposited record with the mean height of what was gathered (m), behind the buoyancy.
 template <int D>
 inline constexpr int mean_height = DepositRecord<D>::first_spare;
+/// The same lane afterwards: the buoyancy as it was gathered, a mean of parcels, for outputs.
+template <int D>
+inline constexpr int gathered_buoyancy = mean_height<D>;
 
-/// Refers the buoyancy of deposited records to h, in place, at the levels 0 … n_z. Empty nodes keep
-/// what they have and are left out of their neighbours' slopes.
+/// Refers the buoyancy of deposited records to h, in place, at the levels 0 … n_z, and leaves what
+/// was gathered in the lane of the heights. Empty nodes keep what they have and are left out of
+/// their neighbours' slopes.
 template <int D>
 void refer_buoyancy_to_nodes(const Grid<D>& grid, double* records);
 

@@ -5,6 +5,7 @@
 #include "base/aligned_array.hpp"
 #include "base/error.hpp"
 #include "mesh/flow_solver.hpp"
+#include "mesh/node_heights.hpp"
 #include "output/grid_fields.hpp"
 
 namespace pileus::model {
@@ -41,8 +42,8 @@ bool GriddedFields<D>::take_from_mesh(const std::string& name, std::vector<doubl
     return true;
   }
   if (name == "buoyancy") {
-    output::copy_nodes(in_.grid, in_.transport.deposited(), Record::width, Record::buoyancy,
-                       values);
+    output::copy_nodes(in_.grid, in_.transport.deposited(), Record::width,
+                       mesh::gathered_buoyancy<D>, values);
     for (int k = 0; k <= in_.grid.nz(); ++k) {
       const double b = in_.reference(in_.grid.bottom() + k * in_.grid.spacing[D - 1]);
       for (std::size_t c = 0; c < in_.grid.columns(); ++c)

@@ -2,10 +2,12 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <ctime>
 #include <filesystem>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -36,8 +38,10 @@ class Scratch {
   fs::path path_;
 };
 
+enum class Parts { operators, operators_and_core };
+
 /// Takes some steps of the scene and adds what its parts cost.
-void measure(const std::string& scene_path, const std::vector<std::string>& overrides,
+void measure(const std::string& scene_path, const std::vector<std::string>& overrides, Parts parts,
              Progress& progress, planner::Costs& costs) {
   const Scratch scratch;
   RunRequest request;
@@ -64,17 +68,23 @@ void measure(const std::string& scene_path, const std::vector<std::string>& over
       core -= cost.seconds;
       costs.set(operator_part(planned), cost);
     }
+  if (parts == Parts::operators) return;
   cost.seconds = core;
   costs.set(planner::core_part(scene), cost);
 }
 
-/// Overrides that switch on every effect an operator of the scene provides and the plan leaves out.
-std::vector<std::string> everything_on(const planner::Plan& plan) {
-  std::vector<std::string> overrides;
-  for (const planner::EffectPlan& effect : plan.effects)
-    if (effect.verdict != planner::Verdict::on && !effect.providers.empty())
-      overrides.push_back(fmt::format("effects.{}=on", effect.effect));
-  return overrides;
+/// An override that switches on every effect an operator of the scene provides, whatever the scene
+/// says; nothing if the plan leaves none of them out.
+std::optional<std::string> everything_on(const planner::Plan& plan) {
+  std::vector<std::string> requests;
+  bool any_left_out = false;
+  for (const planner::EffectPlan& effect : plan.effects) {
+    if (effect.providers.empty()) continue;
+    requests.push_back(effect.effect + ": on");
+    any_left_out = any_left_out || effect.verdict != planner::Verdict::on;
+  }
+  if (!any_left_out) return std::nullopt;
+  return fmt::format("effects={{{}}}", fmt::join(requests, ", "));
 }
 
 }  // namespace
@@ -86,14 +96,22 @@ void measure_costs(const std::string& scene_path, const std::vector<std::string>
     throw Error(ExitCode::file,
                 "There is no place to keep costs: neither XDG_CACHE_HOME nor HOME is set.");
   planner::Costs costs = planner::Costs::read(file);
-  std::vector<std::string> all = everything_on(plan_scene(scene_path, overrides));
-  if (!all.empty()) {
-    all.insert(all.begin(), overrides.begin(), overrides.end());
-    measure(scene_path, all, progress, costs);
+  const auto keep = [&] {
+    fs::create_directories(file.parent_path());
+    output::replace_file(file, costs.text());
+  };
+  measure(scene_path, overrides, Parts::operators_and_core, progress, costs);
+  keep();
+  const auto all = everything_on(plan_scene(scene_path, overrides));
+  if (!all) return;
+  std::vector<std::string> with_everything = overrides;
+  with_everything.push_back(*all);
+  try {
+    measure(scene_path, with_everything, Parts::operators, progress, costs);
+  } catch (const Error&) {  // the scene does without something for a reason: its price is not known
+    return;
   }
-  measure(scene_path, overrides, progress, costs);
-  fs::create_directories(file.parent_path());
-  output::replace_file(file, costs.text());
+  keep();
 }
 
 }  // namespace pileus::model

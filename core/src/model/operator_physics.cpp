@@ -25,7 +25,7 @@ bool OperatorPhysics::apply_before(parcels::Store& store, double time, double dt
   dt_ = dt;
   if (!sequence_.splits_around_transport()) return false;
   watch(store, time);
-  sequence_.apply_before_transport({step, time, dt});
+  sequence_.apply_before_transport({step, time, dt}, [&] { watch_again(store, time); });
   tripwires_.values_changed();
   return true;
 }
@@ -34,7 +34,7 @@ void OperatorPhysics::apply_after(parcels::Store& store, double time, double dt,
                                   std::uint64_t step) {
   if (sequence_.empty()) return;
   watch(store, time + dt);
-  sequence_.apply_after_transport({step, time, dt});
+  sequence_.apply_after_transport({step, time, dt}, [&] { watch_again(store, time + dt); });
   if (!sequence_.order().empty()) tripwires_.values_changed();
 }
 
@@ -68,6 +68,11 @@ void OperatorPhysics::watch(const parcels::Store& store, double time) {
     tripwires_.disarm(trip->effect);
     activations_.push_back({trip->effect, time, step_, because});
   }
+}
+
+void OperatorPhysics::watch_again(const parcels::Store& store, double time) {
+  tripwires_.values_changed();
+  watch(store, time);
 }
 
 void OperatorPhysics::restore(std::vector<Activation> activations) {

@@ -42,6 +42,8 @@ class OperatorPhysics final : public Physics {
 
  private:
   void watch(const parcels::Store& store, double time);
+  /// After an operator has written.
+  void watch_again(const parcels::Store& store, double time);
 
   coupling::OperatorSequence& sequence_;
   planner::Tripwires tripwires_;

@@ -63,6 +63,7 @@ output::CallSummary Loop::call_summary(const coupling::OperatorLedger& op) const
 std::vector<output::EffectSummary> Loop::effect_summaries(const coupling::Ledger& ledger) const {
   std::vector<output::EffectSummary> effects;
   for (const planner::EffectPlan& effect : plan_.effects) {
+    if (effect.silent) continue;
     output::EffectSummary entry{effect.effect, word_of(effect.verdict),
                                 planner::reason_line(plan_, effect)};
     for (const Activation& one : physics_.activations())

@@ -1,5 +1,7 @@
 #include "model/variance_budget.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.hpp"
@@ -44,7 +46,7 @@ VarianceBudget::VarianceBudget(const std::vector<scene::VarianceBudgetControl>& 
                   fmt::format("{}:{}: error: variance budget: parcels carry no '{}' per volume in "
                               "this run.",
                               control.where.file, control.where.line, control.variable));
-    entries_.push_back({scalar});
+    entries_.push_back({scalar, control.variable});
     const std::string& units = store.scalars()[static_cast<std::size_t>(scalar)].units;
     const std::string squared = units == "1" ? "1" : fmt::format("({})2", units);
     const std::string name = control.variable + "_variance";
@@ -69,7 +71,7 @@ double VarianceBudget::variance(const parcels::Store& store, const Entry& entry)
 std::vector<double> VarianceBudget::measure(const parcels::Store& store) const {
   std::vector<double> values;
   for (Entry entry : entries_) {
-    if (!started_) entry.centre = sums_about(store, entry.scalar, 0).first / domain_volume_;
+    if (!entry.started) entry.centre = sums_about(store, entry.scalar, 0).first / domain_volume_;
     values.insert(values.end(), {variance(store, entry), entry.lost[0], entry.lost[1]});
   }
   return values;
@@ -77,33 +79,35 @@ std::vector<double> VarianceBudget::measure(const parcels::Store& store) const {
 
 void VarianceBudget::book(const parcels::Store& store, Sink sink) {
   for (Entry& entry : entries_) {
-    if (!started_) entry.centre = sums_about(store, entry.scalar, 0).first / domain_volume_;
+    if (!entry.started) entry.centre = sums_about(store, entry.scalar, 0).first / domain_volume_;
     const double now = variance(store, entry);
-    if (started_) entry.lost[static_cast<int>(sink)] += entry.last - now;
+    if (entry.started) entry.lost[static_cast<int>(sink)] += entry.last - now;
     entry.last = now;
+    entry.started = true;
   }
-  started_ = true;
+}
+
+bool VarianceBudget::started() const {
+  return std::all_of(entries_.begin(), entries_.end(), [](const Entry& e) { return e.started; });
 }
 
 void VarianceBudget::save(output::NamedData& data) const {
-  if (!started_ || entries_.empty()) return;
-  std::vector<double>& saved = data.arrays["variance_budget"];
-  saved.clear();
   for (const Entry& e : entries_)
-    saved.insert(saved.end(), {e.centre, e.last, e.lost[0], e.lost[1]});
+    if (e.started)
+      data.arrays["variance_budget/" + e.name] = {e.centre, e.last, e.lost[0], e.lost[1]};
 }
 
+/// A quantity that was not looked at before begins here.
 void VarianceBudget::restore(const output::NamedData& data) {
-  const auto found = data.arrays.find("variance_budget");
-  if (found == data.arrays.end() || found->second.size() != 4 * entries_.size()) return;
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const double* saved = found->second.data() + 4 * i;
-    entries_[i].centre = saved[0];
-    entries_[i].last = saved[1];
-    entries_[i].lost[0] = saved[2];
-    entries_[i].lost[1] = saved[3];
+  for (Entry& e : entries_) {
+    const auto found = data.arrays.find("variance_budget/" + e.name);
+    if (found == data.arrays.end() || found->second.size() != 4) continue;
+    e.centre = found->second[0];
+    e.last = found->second[1];
+    e.lost[0] = found->second[2];
+    e.lost[1] = found->second[3];
+    e.started = true;
   }
-  started_ = true;
 }
 
 }  // namespace pileus::model

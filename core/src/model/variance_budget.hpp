@@ -31,7 +31,8 @@ class VarianceBudget {
   /// Books the variance that has gone since the last call, or since the first, which only looks.
   void book(const parcels::Store& store, Sink sink);
   bool empty() const { return entries_.empty(); }
-  bool started() const { return started_; }
+  /// Whether every quantity has been looked at once.
+  bool started() const;
 
   void save(output::NamedData& data) const;
   void restore(const output::NamedData& data);
@@ -39,6 +40,8 @@ class VarianceBudget {
  private:
   struct Entry {
     int scalar;
+    std::string name;
+    bool started = false;
     double centre = 0;  // the first mean: variances are taken about a value near the mean
     double last = 0;    // variance when it was last looked at
     double lost[2] = {0, 0};
@@ -47,7 +50,6 @@ class VarianceBudget {
 
   std::vector<Entry> entries_;
   double domain_volume_;
-  bool started_ = false;
   std::vector<std::array<std::string, 3>> outputs_;
 };
 

@@ -42,11 +42,19 @@ Costs Costs::read(const std::filesystem::path& path) {
   if (!json.is_object()) return costs;
   for (const auto& [part, entry] : json.items()) {
     if (!entry.is_object()) continue;
+    // The file is a cache that anybody may have written to: what is not as it should be is not
+    // there.
+    const auto text_of = [&entry](const char* key) {
+      return entry.contains(key) && entry.at(key).is_string() ? entry.at(key).get<std::string>()
+                                                              : std::string();
+    };
+    constexpr const char* seconds = "core_seconds_per_parcel_step";
     Cost cost;
-    cost.seconds = entry.value("core_seconds_per_parcel_step", 0.0);
-    cost.scene = entry.value("scene", "");
-    cost.when = entry.value("when", "");
-    cost.commit = entry.value("commit", "");
+    if (entry.contains(seconds) && entry.at(seconds).is_number())
+      cost.seconds = entry.at(seconds).get<double>();
+    cost.scene = text_of("scene");
+    cost.when = text_of("when");
+    cost.commit = text_of("commit");
     if (cost.seconds > 0) costs.parts_[part] = cost;
   }
   return costs;

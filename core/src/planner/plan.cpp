@@ -389,8 +389,8 @@ Plan make_plan(const scene::Scene& scene, const std::vector<ListedOperator>& ope
     // Where nothing derives what no run can be without, the parcels carry it.
     if (effect.providers.empty() && effect.rule != nullptr && effect.rule->always) continue;
     call_for_requested_output(scene, operators, *plan.rules, effect);
-    obey_request(scene.effects, effect);
-    if (has_nothing_to_say(effect)) continue;
+    obey_request(scene.effects, plan, effect);
+    effect.silent = has_nothing_to_say(effect);
     plan.effects.push_back(std::move(effect));
   }
   describe_operators(operators, plan);

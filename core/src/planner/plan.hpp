@@ -49,6 +49,7 @@ struct EffectPlan {
   bool forced = false;                 // by the scene
   bool against_evidence = false;       // forced otherwise than the rules say
   bool stop_on_trip = false;           // when watched: stop instead of switching on
+  bool silent = false;                 // nothing but that no operator provides it: not in tables
   std::vector<std::size_t> providers;  // positions in the list of operators
   std::vector<Fact> facts;             // what the rule looked at
   std::string remedy;                  // what to change where no number decides

@@ -71,7 +71,7 @@ std::string plan_json(const Plan& plan) {
   json["title"] = plan.title;
   json["effects"] = Json(Json::object());
   for (const EffectPlan& effect : plan.effects)
-    json["effects"][effect.effect] = effect_json(plan, effect);
+    if (!effect.silent) json["effects"][effect.effect] = effect_json(plan, effect);
   json["operators"] = Json(Json::object());
   for (const OperatorPlan& op : plan.operators)
     json["operators"][op.name] = {{"id", op.id}, {"version", op.version}, {"present", op.present},

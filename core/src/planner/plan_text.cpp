@@ -24,9 +24,11 @@ std::string names_of(const std::vector<std::string>& names) {
 std::string effects_section(const Plan& plan) {
   constexpr std::size_t indent = 31;
   std::string text = fmt::format("\n  {:<21}{:<8}{}\n", "effect", "", "because");
-  for (const EffectPlan& effect : plan.effects)
+  for (const EffectPlan& effect : plan.effects) {
+    if (effect.silent) continue;
     text += fmt::format("  {:<20} {:<8}{}\n", effect.effect, upper(word_of(effect.verdict)),
                         wrap_text(reason_line(plan, effect), indent));
+  }
   return text;
 }
 

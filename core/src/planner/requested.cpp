@@ -113,7 +113,21 @@ void call_for_requested_output(const scene::Scene& scene,
   }
 }
 
-void obey_request(const scene::EffectRequests& requests, EffectPlan& effect) {
+namespace {
+
+/// An effect without which a demanded one cannot happen, and which is off.
+const EffectPlan* missing_need(const Plan& plan, const EffectPlan& effect) {
+  if (effect.rule == nullptr) return nullptr;
+  for (const std::string& need : effect.rule->needs) {
+    const EffectPlan* other = plan.find(need);
+    if (other != nullptr && other->verdict == Verdict::off) return other;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void obey_request(const scene::EffectRequests& requests, const Plan& plan, EffectPlan& effect) {
   using Mode = scene::EffectRequests::Mode;
   const auto found =
       std::find_if(requests.requests.begin(), requests.requests.end(),
@@ -135,6 +149,12 @@ void obey_request(const scene::EffectRequests& requests, EffectPlan& effect) {
         fmt::format("{}: error: nothing is known by which '{}' could be watched: {}; say on "
                     "or off",
                     scene::describe(found->where), effect.effect, effect.reason));
+  if (const EffectPlan* need = mode == Mode::off ? nullptr : missing_need(plan, effect))
+    throw Error(ExitCode::usage,
+                fmt::format("{}: error: '{}' needs '{}', which is off ({}); demand it as well, or "
+                            "leave '{}' to the rules",
+                            scene::describe(found->where), effect.effect, need->effect,
+                            need->reason, effect.effect));
   const Verdict verdict = mode == Mode::on      ? Verdict::on
                           : mode == Mode::watch ? Verdict::watch
                                                 : Verdict::off;

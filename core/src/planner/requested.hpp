@@ -18,8 +18,9 @@ void call_for_requested_output(const scene::Scene& scene,
                                EffectPlan& effect);
 
 /// Replaces the verdict by the one the scene demands.
-/// Errors  Error(ExitCode::usage) if an effect is demanded that no operator provides
-void obey_request(const scene::EffectRequests& requests, EffectPlan& effect);
+/// Errors  Error(ExitCode::usage) if an effect is demanded that no operator provides, or without
+///         one that it needs; `plan` holds those judged before
+void obey_request(const scene::EffectRequests& requests, const Plan& plan, EffectPlan& effect);
 
 /// Effects forced off whose operator stays for others and has nothing that it could leave out with
 /// them: those that a list does not name stay on, those named are refused. True if any stay.

@@ -173,7 +173,6 @@ std::string scene_fingerprint(const std::string& path, const std::vector<std::st
     if (entry->value.entries.empty()) remove_keys(root, {section});
   };
   remove_inside("scene", {"name", "title", "description"});
-  remove_inside("diagnostics", {"variance_budgets"});  // only adds to what is measured
   return sha256_hex(scene::flow_text(root));
 }
 

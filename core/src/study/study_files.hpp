@@ -17,8 +17,8 @@ void write_findings_csv(const std::filesystem::path& path, const Findings& findi
 void write_findings_json(const std::filesystem::path& path, const Findings& findings);
 
 /// SHA-256 of what a scene file (with what it extends) simulates under some settings, key=value:
-/// comments, layout, title, description, outputs, budgets of variance and expectations aside, and
-/// whatever the settings replace. Throws Error(usage) when it cannot be read or a setting has no
+/// comments, layout, title, description, outputs and expectations aside, and whatever the settings
+/// replace. Throws Error(usage) when it cannot be read or a setting has no
 /// place in it.
 std::string scene_fingerprint(const std::string& path, const std::vector<std::string>& settings);
 

@@ -70,7 +70,13 @@ void expect_linear_is_exact(const mesh::Grid<D>& grid, std::size_t per_cell, uns
   ASSERT_EQ(gathered.empty, 0u);
   const double dz = grid.spacing[D - 1];
   EXPECT_GT(gathered.unevenness(), 0.05 * slope * dz);
+  std::vector<double> as_gathered;
+  for (std::size_t c = 0; c < grid.columns(); ++c)
+    for (int k = 0; k <= grid.nz(); ++k) as_gathered.push_back(gathered.buoyancy(c, k));
   mesh::refer_buoyancy_to_nodes(grid, gathered.records.data());
+  for (std::size_t c = 0, i = 0; c < grid.columns(); ++c)
+    for (int k = 0; k <= grid.nz(); ++k, ++i)
+      EXPECT_EQ(gathered.at(c, k, mesh::gathered_buoyancy<D>), as_gathered[i]) << "for outputs";
   const double size = std::abs(intercept) + slope * std::abs(grid.top());
   for (std::size_t c = 0; c < grid.columns(); ++c)
     for (int k = 0; k <= grid.nz(); ++k) {

@@ -43,6 +43,31 @@ TEST(OnDemand, is_always_there_for_other_closures) {
   EXPECT_EQ(run.values("relative_humidity")[0], 101);
 }
 
+/// The buoyancy drives the flow: it is needed whatever a plugin says.
+class LazyBuoyancy : public Operator<LazyBuoyancy> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.lazy_buoyancy");
+    d.op.form = PILEUS_CLOSURE;
+    d.provides("buoyancy");
+    height = d.reads("height", "m");
+    buoyancy = d.derives("buoyancy", "m s-2").on_demand();
+  }
+  void diagnose(const pileus_step&, Block block) const {
+    if (block.has(buoyancy)) std::copy_n(block.in(height), block.count(), block.out(buoyancy));
+  }
+
+ private:
+  Slot height, buoyancy;
+};
+
+TEST(OnDemand, is_nothing_for_the_buoyancy) {
+  ToyRun run(entries_of<LazyBuoyancy>({"lazy"}), 10);
+  lift(run, 1);
+  run.sequence.diagnose_stage({});
+  EXPECT_EQ(run.values("buoyancy")[0], 101);
+}
+
 /// Declares what makes no sense: an owned quantity on demand.
 class Demanding : public Operator<Demanding> {
  public:

@@ -230,6 +230,33 @@ TEST(StageKernel, ClosesShapesAndResetsBrokenOnes) {
   }
 }
 
+// Whoever else deforms parcels leaves healthy ones alone: to the bit, whatever lies beside them.
+TEST(StageKernel, BluntsBrokenShapesAndNoOthers) {
+  const std::size_t count = 29;
+  for (const auto* table : stage_tables()) {
+    Stage<3> stage({{4, 4, 4}, {0, 0, 0}, {1, 1, 1}}, count, 2, 8);
+    for (int c = 0; c < 6; ++c) stage.store.shape(c)[2] *= 1.02;  // a determinant that is off
+    for (std::size_t p = 3; p < count; p += 4) stage.store.shape(5)[p] *= -1;
+    std::vector<Eigen::Matrix3d> before;
+    for (std::size_t p = 0; p < count; ++p) before.push_back(testing::get_shape<3>(stage.store, p));
+    ShapeJob<3> job{};
+    for (int c = 0; c < 6; ++c) job.shape[c] = stage.store.shape(c);
+    job.size_volume = stage.store.size_volume();
+    job.aspect_limit = 100;
+    job.end = count;
+    table->blunt_shapes_3d(job);
+    EXPECT_EQ(job.broken, 7u);
+    for (std::size_t p = 0; p < count; ++p) {
+      const auto b = testing::get_shape<3>(stage.store, p);
+      const double target = testing::squared_axes_product<3>(stage.store.volume()[p]);
+      if (p % 4 == 3)
+        EXPECT_NEAR(b.determinant() / target, 1, 1e-11) << p;
+      else
+        EXPECT_EQ(b, before[p]) << p;
+    }
+  }
+}
+
 // Steps far too long stretch parcels by e^20 and more: whatever comes, the shape is positive
 // definite, encloses its volume and is at most as thin as the limit (scenes reference 9, case 7).
 template <int D>

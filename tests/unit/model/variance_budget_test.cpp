@@ -62,6 +62,31 @@ TEST(VarianceBudget, GoesOnAfterARestart) {
   EXPECT_EQ(budget.measure(store), continued.measure(store));
 }
 
+/// One that is added begins then; the other goes on.
+TEST(VarianceBudget, GoesOnByNameWhenAnotherIsAdded) {
+  parcels::Store store(2, {{"tracer", "1", parcels::Nature::intensive, "", 0, 0, 0},
+                           {"other", "1", parcels::Nature::intensive, "", 0, 0, 0}});
+  store.resize(4);
+  for (std::size_t p = 0; p < 4; ++p) {
+    store.volume()[p] = 2;
+    store.scalar(0)[p] = store.scalar(1)[p] = static_cast<double>(p);
+  }
+  VarianceBudget budget({{"tracer", {}}}, store, 8);
+  budget.book(store, Sink::operators);
+  store.scalar(0)[3] = 2;
+  budget.book(store, Sink::mergers);
+  output::NamedData data;
+  budget.save(data);
+  VarianceBudget continued({{"other", {}}, {"tracer", {}}}, store, 8);
+  continued.restore(data);
+  EXPECT_FALSE(continued.started());
+  continued.book(store, Sink::operators);
+  const auto before = budget.measure(store), after = continued.measure(store);
+  EXPECT_GT(before[2], 0);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(after[3 + i], before[i]) << i;
+  EXPECT_EQ(after[1], 0);
+}
+
 TEST(VarianceBudget, RefusesWhatIsNotCarriedPerVolume) {
   const parcels::Store store = four_parcels();
   EXPECT_THROW(VarianceBudget({{"amount", {}}}, store, 8), Error);

@@ -65,6 +65,14 @@ TEST(Costs, survive_their_file_and_a_damaged_one_holds_none) {
   ASSERT_NE(cost, nullptr);
   EXPECT_EQ(cost->seconds, 1e-7);
   EXPECT_EQ(cost->when, "2026-11-26");
+  for (const char* damaged :
+       {R"({"core 3 rk4": {"core_seconds_per_parcel_step": null}})",
+        R"({"core 3 rk4": {"core_seconds_per_parcel_step": "3", "scene": 1}})", "[1]"}) {
+    std::ofstream(path) << damaged;
+    EXPECT_EQ(Costs::read(path).find("core 3 rk4"), nullptr) << damaged;
+  }
+  std::ofstream(path) << R"({"core 3 rk4": {"core_seconds_per_parcel_step": 3, "when": []}})";
+  EXPECT_EQ(Costs::read(path).find("core 3 rk4")->seconds, 3);
   std::ofstream(path) << "{";
   EXPECT_EQ(Costs::read(path).find("org.clouds 1.0.0 (buoyancy)"), nullptr);
 }

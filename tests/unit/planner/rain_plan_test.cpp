@@ -98,6 +98,33 @@ TEST(PlanOfClouds, refuses_to_claim_what_an_operator_cannot_leave_out) {
       << "condensation is off as well";
 }
 
+TEST(PlanOfClouds, refuses_an_effect_without_what_it_needs) {
+  const test::Loaded clouds = raining_clouds();
+  for (const char* effects :
+       {"effects: [collection]\n", "effects: {condensation: off, collection: on}\n"}) {
+    try {
+      plan_of(humid_scene("", effects), {&clouds});
+      FAIL() << "it was accepted: " << effects;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::usage);
+      for (const char* phrase : {"humid.yaml:6:", "'collection'", "'condensation'"})
+        EXPECT_NE(std::string(error.what()).find(phrase), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_NO_THROW(plan_of(humid_scene("", "effects: [condensation, collection]\n"), {&clouds}));
+}
+
+// It is not in the tables, but it can be asked for, and what follows from it is off.
+TEST(PlanOfClouds, knows_effects_that_nobody_provides) {
+  const test::Loaded fall = load<test::Fall>();
+  const Plan plan = plan_of(humid_scene(), {&fall});
+  const EffectPlan* mixing = plan.find("small_scale_mixing");
+  ASSERT_NE(mixing, nullptr);
+  EXPECT_TRUE(mixing->silent);
+  EXPECT_EQ(mixing->verdict, Verdict::off);
+  EXPECT_FALSE(plan.find("sedimentation")->silent);
+}
+
 TEST(PlanOfClouds, calls_for_all_that_what_the_scene_wants_to_see_follows_from) {
   const test::Loaded clouds = raining_clouds(), fall = load<test::Fall>();
   const Plan plan = plan_of(humid_scene("", "output: {fields: {variables: [rainfall_amount]}}\n"),

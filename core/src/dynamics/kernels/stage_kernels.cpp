@@ -127,48 +127,63 @@ Symmetric2<Pack> blunted(const Symmetric2<Pack>& b, Pack ab, double limit) {
           select(measurable, scale * (z * z + b2 * x * x), ab)};
 }
 
-/// Restores det B exactly. The determinant of a needle of aspect ratio λ is a difference that keeps
-/// 1/λ⁴ of its terms: beyond the limit it is rounding and says nothing. Such a shape, and one that
-/// is not positive definite, is blunted.
-Symmetric3<Pack> close_shape(Symmetric3<Pack> b, Pack volume, std::size_t count, double limit,
-                             std::size_t& broken) {
-  const Pack target = squared_axes_product_3d(volume);
-  const Pack det = determinant(b);
+constexpr double inverse_pi = 0.31830988618379067154;
+
+/// Whether a shape can be computed with. The determinant of a needle of aspect ratio λ is a
+/// difference that keeps 1/λ⁴ of its terms: beyond the limit it is rounding and says nothing.
+auto is_healthy(const Symmetric3<Pack>& b, Pack det, Pack target, double limit) {
   const Pack trace = b.xx + b.yy + b.zz;
   // (abc)²/(a² + b² + c²)³ is λ⁻⁴ for a needle, b = c, and λ⁻²/8 for a disc, a = b, whose
   // determinant loses less: discs may be as flat as limit²/√8.
   const double thinnest = 1.0 / (limit * limit * limit * limit);
-  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (b.xx * b.yy - b.xy * b.xy > 0.0) &
-                       (target > thinnest * (trace * trace * trace));
+  return (det > 0.0) & (b.xx > 0.0) & (b.xx * b.yy - b.xy * b.xy > 0.0) &
+         (target > thinnest * (trace * trace * trace));
+}
+
+auto is_healthy(const Symmetric2<Pack>& b, Pack det, Pack target, double limit) {
+  const Pack trace = b.xx + b.zz;
+  return (det > 0.0) & (b.xx > 0.0) & (target > 1.0 / (limit * limit) * (trace * trace));
+}
+
+template <class Mask>
+Symmetric3<Pack> choose(Mask mask, const Symmetric3<Pack>& a, const Symmetric3<Pack>& b) {
+  return {select(mask, a.xx, b.xx), select(mask, a.xy, b.xy), select(mask, a.xz, b.xz),
+          select(mask, a.yy, b.yy), select(mask, a.yz, b.yz), select(mask, a.zz, b.zz)};
+}
+
+template <class Mask>
+Symmetric2<Pack> choose(Mask mask, const Symmetric2<Pack>& a, const Symmetric2<Pack>& b) {
+  return {select(mask, a.xx, b.xx), select(mask, a.xz, b.xz), select(mask, a.zz, b.zz)};
+}
+
+/// Restores det B exactly. A shape that is not healthy is blunted.
+Symmetric3<Pack> close_shape(Symmetric3<Pack> b, Pack volume, std::size_t count, double limit,
+                             std::size_t& broken) {
+  const Pack target = squared_axes_product_3d(volume);
+  const Pack det = determinant(b);
+  const auto healthy = is_healthy(b, det, target, limit);
   const Pack s = cube_root_near_one(select(healthy, target / det, broadcast(1.0)));
   const Symmetric3<Pack> whole{s * b.xx, s * b.xy, s * b.xz, s * b.yy, s * b.yz, s * b.zz};
   const std::size_t lost = count - count_lanes(healthy, count);
   if (lost == 0) [[likely]]
     return whole;
   broken += lost;
-  const Symmetric3<Pack> blunt = blunted(b, target, limit);
-  return {select(healthy, whole.xx, blunt.xx), select(healthy, whole.xy, blunt.xy),
-          select(healthy, whole.xz, blunt.xz), select(healthy, whole.yy, blunt.yy),
-          select(healthy, whole.yz, blunt.yz), select(healthy, whole.zz, blunt.zz)};
+  return choose(healthy, whole, blunted(b, target, limit));
 }
 
 Symmetric2<Pack> close_shape(Symmetric2<Pack> b, Pack area, std::size_t count, double limit,
                              std::size_t& broken) {
-  const Pack ab = area * 0.31830988618379067154;  // 1/π
+  const Pack ab = area * inverse_pi;
   const Pack target = ab * ab;
   const Pack det = determinant(b);
-  const Pack trace = b.xx + b.zz;
-  const double thinnest = 1.0 / (limit * limit);
-  const auto healthy = (det > 0.0) & (b.xx > 0.0) & (target > thinnest * (trace * trace));
+  const auto healthy = is_healthy(b, det, target, limit);
   const Pack s = square_root(select(healthy, target / det, broadcast(1.0)));
   const Symmetric2<Pack> whole{s * b.xx, s * b.xz, s * b.zz};
   const std::size_t lost = count - count_lanes(healthy, count);
   if (lost == 0) [[likely]]
     return whole;
   broken += lost;
-  const Symmetric2<Pack> blunt = blunted(b, ab, limit);
-  return {select(healthy, whole.xx, blunt.xx), select(healthy, whole.xz, blunt.xz),
-          select(healthy, whole.zz, blunt.zz)};
+  return choose(healthy, whole, blunted(b, ab, limit));
 }
 
 void store_shape(double* const* shape, std::size_t p, const Symmetric3<Pack>& b) {
@@ -322,11 +337,13 @@ void blunt_shapes_3d(ShapeJob<3>& job) {
     const Symmetric3<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
                              load(job.shape[2] + p), load(job.shape[3] + p),
                              load(job.shape[4] + p), load(job.shape[5] + p)};
-    std::size_t broken = 0;
-    const Symmetric3<Pack> closed =
-        close_shape(b, load(job.size_volume + p), count, job.aspect_limit, broken);
-    if (broken > 0) store_shape(job.shape, p, closed);
-    job.broken += broken;
+    const Pack target = squared_axes_product_3d(load(job.size_volume + p));
+    const auto healthy = is_healthy(b, determinant(b), target, job.aspect_limit);
+    const std::size_t lost = count - count_lanes(healthy, count);
+    if (lost == 0) [[likely]]
+      continue;
+    job.broken += lost;
+    store_shape(job.shape, p, choose(healthy, b, blunted(b, target, job.aspect_limit)));
   }
 }
 
@@ -335,11 +352,13 @@ void blunt_shapes_2d(ShapeJob<2>& job) {
     const std::size_t count = std::min<std::size_t>(job.end - p, lanes);
     const Symmetric2<Pack> b{load(job.shape[0] + p), load(job.shape[1] + p),
                              load(job.shape[2] + p)};
-    std::size_t broken = 0;
-    const Symmetric2<Pack> closed =
-        close_shape(b, load(job.size_volume + p), count, job.aspect_limit, broken);
-    if (broken > 0) store_shape(job.shape, p, closed);
-    job.broken += broken;
+    const Pack ab = load(job.size_volume + p) * inverse_pi;
+    const auto healthy = is_healthy(b, determinant(b), ab * ab, job.aspect_limit);
+    const std::size_t lost = count - count_lanes(healthy, count);
+    if (lost == 0) [[likely]]
+      continue;
+    job.broken += lost;
+    store_shape(job.shape, p, choose(healthy, b, blunted(b, ab, job.aspect_limit)));
   }
 }
 
