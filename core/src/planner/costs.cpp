@@ -22,6 +22,11 @@ std::string host_name() {
   return name.data();
 }
 
+std::string text_of(const Json& entry, const char* key) {
+  return entry.contains(key) && entry.at(key).is_string() ? entry.at(key).get<std::string>()
+                                                          : std::string();
+}
+
 }  // namespace
 
 std::filesystem::path Costs::default_path() {
@@ -34,6 +39,7 @@ std::filesystem::path Costs::default_path() {
   return folder / "pileus" / ("costs-" + host_name() + ".json");
 }
 
+/// The file is a cache that anybody may have written to: what is not as it should be is not there.
 Costs Costs::read(const std::filesystem::path& path) {
   Costs costs;
   std::ifstream stream(path);
@@ -42,19 +48,13 @@ Costs Costs::read(const std::filesystem::path& path) {
   if (!json.is_object()) return costs;
   for (const auto& [part, entry] : json.items()) {
     if (!entry.is_object()) continue;
-    // The file is a cache that anybody may have written to: what is not as it should be is not
-    // there.
-    const auto text_of = [&entry](const char* key) {
-      return entry.contains(key) && entry.at(key).is_string() ? entry.at(key).get<std::string>()
-                                                              : std::string();
-    };
     constexpr const char* seconds = "core_seconds_per_parcel_step";
     Cost cost;
     if (entry.contains(seconds) && entry.at(seconds).is_number())
       cost.seconds = entry.at(seconds).get<double>();
-    cost.scene = text_of("scene");
-    cost.when = text_of("when");
-    cost.commit = text_of("commit");
+    cost.scene = text_of(entry, "scene");
+    cost.when = text_of(entry, "when");
+    cost.commit = text_of(entry, "commit");
     if (cost.seconds > 0) costs.parts_[part] = cost;
   }
   return costs;
