@@ -21,6 +21,18 @@ inline void introduce(Declaration& d, const char* id) {
   d.op.licence = "MIT";
 }
 
+/// The air of the rules, with their parameter names.
+inline void describe_air(Declaration& d) {
+  d.number("base_height", "m", 0);
+  d.number("gravity", "m s-2", 9.81);
+  d.number("heat_capacity", "J kg-1 K-1", 1005);
+  d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04);
+  d.number("epsilon", "1", 0.622);
+  d.number("surface_pressure", "Pa", 1e5);
+  d.numbers("reference_height", "m", 0);
+  d.numbers("reference_potential_temperature", "K", 300);
+}
+
 /// Condensation and buoyancy, ideal or real, with the parameter names of the rules.
 class MoistAir : public Operator<MoistAir> {
  public:
@@ -32,14 +44,7 @@ class MoistAir : public Operator<MoistAir> {
     d.choice("thermodynamics", {"ideal", "real"});
     d.number("surface_humidity", "1", 0.015);
     d.number("scale_height", "m", 1000);
-    d.number("base_height", "m", 0);
-    d.number("gravity", "m s-2", 9.81);
-    d.number("heat_capacity", "J kg-1 K-1", 1005);
-    d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04);
-    d.number("epsilon", "1", 0.622);
-    d.number("surface_pressure", "Pa", 1e5);
-    d.numbers("reference_height", "m", 0);
-    d.numbers("reference_potential_temperature", "K", 300);
+    describe_air(d);
     d.reads("total_water_mass_fraction", "1").intensive();
     d.derives("buoyancy", "m s-2");
     d.derives("mass_fraction_of_cloud_liquid_water_in_air", "1").when("effect.condensation == on");
@@ -57,14 +62,7 @@ class Clouds : public Operator<Clouds> {
     d.choice("collection", {"none", "some"});
     d.choice("saturation_pressure",
              {"bolton", "tetens", "magnus", "buck", "murphy_koop", "wexler"});
-    d.number("base_height", "m", 0);
-    d.number("gravity", "m s-2", 9.81);
-    d.number("heat_capacity", "J kg-1 K-1", 1005);
-    d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04);
-    d.number("epsilon", "1", 0.622);
-    d.number("surface_pressure", "Pa", 1e5);
-    d.numbers("reference_height", "m", 0);
-    d.numbers("reference_potential_temperature", "K", 300);
+    describe_air(d);
     d.provides("condensation");
     d.provides("activation");
     d.provides("collection", "collection != none");
