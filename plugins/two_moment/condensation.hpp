@@ -1,13 +1,14 @@
 // Condensation, evaporation and activation of one parcel over a step: supersaturation relaxes
 // exactly over sub-steps, vapour, water and heat change by the same increments.
 #pragma once
+#include <pileus/moist_air.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "activation.hpp"
 #include "droplet_growth.hpp"
-#include "moist_air.hpp"
 #include "rain_evaporation.hpp"
 #include "relaxation.hpp"
 

@@ -8,21 +8,6 @@ namespace pileus::two_moment {
 
 using namespace drops;  // NOLINT: the vocabulary of this folder
 
-/// Diffusivity of vapour in air, m2 s-1. Pruppacher & Klett 1997, eq. 13-3; −40 to 40 °C.
-inline double vapour_diffusivity(double temperature, double pressure) {
-  return 2.11e-5 * std::pow(temperature / 273.15, 1.94) * (101325.0 / pressure);
-}
-
-/// Thermal conductivity of air, W m-1 K-1. Linear fit of Beard & Pruppacher 1971.
-inline double heat_conductivity(double temperature) {
-  return 4.3783e-3 + 7.1128e-5 * temperature;
-}
-
-/// Dynamic viscosity of air, kg m-1 s-1. Rogers & Yau 1989, table 7.1 as a Sutherland law.
-inline double dynamic_viscosity(double temperature) {
-  return 1.72e-5 * (393.0 / (temperature + 120.0)) * std::pow(temperature / 273.0, 1.5);
-}
-
 /// G in r dr/dt = G s, m2 s-1: 1/G = F_d + F_k, F_d = ρ_w R_v T/(D e_s) and
 /// F_k = ρ_w L/(K T)·(L/(R_v T) − 1) (Rogers & Yau 1989, eq. 7.17, without curvature and solute).
 ///

@@ -1,4 +1,4 @@
-// Drops of water: what the plugins for clouds and rain agree on.
+// Drops of water and the air about them: what the plugins for clouds and rain agree on.
 #pragma once
 #include <cmath>
 
@@ -22,6 +22,21 @@ inline double mass_of_radius(double radius) {
 }
 inline double radius_of_mass(double mass) {
   return std::cbrt(mass * (3.0 / (4.0 * pi * water_density)));
+}
+
+/// Diffusivity of vapour in air, m2 s-1. Pruppacher & Klett 1997, eq. 13-3; −40 to 40 °C.
+inline double vapour_diffusivity(double temperature, double pressure) {
+  return 2.11e-5 * std::pow(temperature / 273.15, 1.94) * (101325.0 / pressure);
+}
+
+/// Thermal conductivity of air, W m-1 K-1. Linear fit of Beard & Pruppacher 1971.
+inline double heat_conductivity(double temperature) {
+  return 4.3783e-3 + 7.1128e-5 * temperature;
+}
+
+/// Dynamic viscosity of air, kg m-1 s-1. Rogers & Yau 1989, table 7.1 as a Sutherland law.
+inline double dynamic_viscosity(double temperature) {
+  return 1.72e-5 * (393.0 / (temperature + 120.0)) * std::pow(temperature / 273.0, 1.5);
 }
 
 }  // namespace pileus::drops

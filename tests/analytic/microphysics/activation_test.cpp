@@ -2,8 +2,7 @@
 #include "../../../plugins/two_moment/activation.hpp"
 
 #include <gtest/gtest.h>
-
-#include "../../../plugins/two_moment/moist_air.hpp"
+#include <pileus/moist_air.hpp>
 
 namespace pileus::two_moment {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "../../../plugins/two_moment/moist_air.hpp"
+#include "pileus/moist_air.hpp"
 #include "pileus/reference_state.hpp"
 #include "pileus/thermo.hpp"
 #include "planner/rule_number.hpp"
@@ -215,10 +215,10 @@ TEST(RuleForTwoMoments, leaves_out_no_parcel_above_saturation) {
   Draws draw(3);
   int left_out = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    two_moment::MoistAir air;
+    MoistAir air;
     air.formula = formulas[trial % 5];
-    air.measure = trial % 2 == 0 ? two_moment::HumidityMeasure::specific_humidity
-                                 : two_moment::HumidityMeasure::mixing_ratio;
+    air.measure =
+        trial % 2 == 0 ? HumidityMeasure::specific_humidity : HumidityMeasure::mixing_ratio;
     air.constants.epsilon = draw.uniform(0.01, 0.99);
     const double height = draw.uniform(0, 9000), theta = draw.uniform(250, 340);
     const std::vector<double> base = {0}, reference_theta = {290};

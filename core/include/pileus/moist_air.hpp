@@ -1,11 +1,11 @@
 // The air a parcel's water exchanges heat and vapour with: saturation at a temperature and
 // pressure.
 #pragma once
-#include <pileus/thermo.hpp>
-
 #include <algorithm>
 
-namespace pileus::two_moment {
+#include "thermo.hpp"
+
+namespace pileus {
 
 enum class HumidityMeasure { specific_humidity, mixing_ratio };
 
@@ -73,4 +73,4 @@ struct MoistAir {
   }
 };
 
-}  // namespace pileus::two_moment
+}  // namespace pileus
