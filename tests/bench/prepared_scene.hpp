@@ -26,7 +26,8 @@ class PreparedScene {
         planned_(model::plan_run(scene_, load(path))),
         sequence_(std::move(planned_.operators), options()),
         physics_(sequence_, planner::Tripwires(planned_.plan)),
-        simulation_(model::make_simulation(scene_, sequence_.required_scalars(), physics_)) {
+        simulation_(model::make_simulation(scene_, sequence_.required_scalars(), physics_,
+                                           sequence_.required_items())) {
     sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
     simulation_->initialise(scene_);
     sequence_.init({0, 0.0, 0.0});

@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 #define PILEUS_ABI_MAJOR 0u /* also in the entry symbol's name: a new major is a new symbol */
-#define PILEUS_ABI_MINOR 1u /* raised when a table grows */
+#define PILEUS_ABI_MINOR 2u /* raised when a table grows */
 #define PILEUS_ENTRY_SYMBOL "pileus_module_v0"
 #define PILEUS_EXPORT __attribute__((visibility("default")))
 /* Does table P, filled in by the other side, reach as far as MEMBER? A member that is not reached
@@ -52,7 +52,7 @@ typedef struct pileus_error { /* owned by the caller, valid for one call */
 /* clang-format off */
 enum { /* place: where a quantity lives */
   PILEUS_PARCEL = 1,
-  PILEUS_ITEM,              /* per-parcel lists, see pileus.items/1 */
+  PILEUS_ITEM,              /* in lists that every parcel owns; see below */
   PILEUS_MESH,              /* deposited by the core from the parcels' quantity of that name, or a
                              * quantity of the gridded flow; one element per node, see
                              * pileus.mesh/1; read only, not in diagnose */
@@ -97,7 +97,7 @@ enum { /* flags, a bit set */
   PILEUS_SERIAL = 1u,       /* blocks one after another */
   PILEUS_STIFF = 2u,
   PILEUS_RANDOM = 4u,
-  PILEUS_RESIZES_ITEMS = 8u
+  PILEUS_RESIZES_ITEMS = 8u /* calls regroup of pileus.item_lists/1 in apply; scope global */
 };
 enum { /* parameter type */
   PILEUS_NUMBER = 1, PILEUS_INTEGER, PILEUS_SWITCH, PILEUS_CHOICE, PILEUS_TEXT,
@@ -114,6 +114,19 @@ enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* compariso
  * are NULL), and the operator leaves out the work for them; where it is watched, they begin to be
  * handed over when it is switched on. */
 
+/* Items. Every parcel owns a list of items, each of which stands for many alike (droplets). Each of
+ * their quantities has an owner that CREATEs it, others may read and write it. Exactly one is of
+ * type I64 and EXTENSIVE: how many things the item stands for; its owner makes the items in init,
+ * before other operators are initialised, and an item of 0 things is none and soon gone. Those of
+ * type F64 and INTENSIVE, weighted by it, belong to each of these things; if one has a budget,
+ * multiplicity times value over pileus_items_ext.budget_scale counts in it. One named
+ * height_within_parcel, a LABEL, is the item's height above its parcel's centre over the parcel's
+ * vertical half-extent.
+ *
+ * The core keeps the lists through splits of parcels (each half gets half of every item, at the
+ * same relative height), mergers (lists are joined, items stay at their height, and lists that have
+ * become too long are shortened by uniting items alike, with sums kept) and restarts. An activity
+ * condition on a quantity of the items holds for a parcel if it holds for one of its items. */
 typedef struct pileus_quantity { /* its position in `quantities` is its slot number */
   uint32_t size, place, type, components, access, nature, on_merge, on_split;
   const char* name;   /* CF standard name, or one registered in schemas/quantities.yaml */
@@ -190,9 +203,9 @@ typedef struct pileus_block {
   const uint64_t* uid;       /* identity of each parcel: the key of its random numbers */
   const pileus_view* views;  /* one per declared quantity, by slot */
   const int64_t* item_begin; /* per parcel, into ITEM views; NULL without items */
-  const int32_t *item_count, *item_room;
-  const pileus_grid* grid; /* NULL in a zero-dimensional box */
-  double* ledger;          /* per declared budget: amount brought in from outside */
+  const int32_t *item_count, *item_room; /* item_room: reserved, NULL */
+  const pileus_grid* grid;               /* NULL in a zero-dimensional box */
+  double* ledger;                        /* per declared budget: amount brought in from outside */
 } pileus_block;
 
 typedef struct pileus_values { /* validated before it is given; lives as long as `self` */
@@ -225,7 +238,8 @@ typedef struct pileus_host {
   /* [any] named timers in the run's ledger; a token of 0 is not timed */
   uint64_t (*span_begin)(const struct pileus_host*, const char* name);
   void (*span_end)(const struct pileus_host*, uint64_t span);
-  const void* (*extension)(const struct pileus_host*, const char* id); /* [setup] NULL: unknown */
+  const void* (*extension)(const struct pileus_host*,
+                           const char* id); /* [setup][step] NULL: unknown */
   /* [step][block] counts repairs for the run's ledger: increments that a limiter cut, values moved
    * into their range. Conserving or not, none goes unreported. Since minor 1 */
   void (*repaired)(const struct pileus_host*, uint64_t count);
@@ -261,16 +275,30 @@ typedef struct pileus_operator {
   const void* (*extension)(void* self, const char* id); /* [setup] or NULL */
 } pileus_operator;
 
-/* Extension "pileus.items/1": superdroplets and other per-parcel lists. */
+/* Extension "pileus.items/1" of the operator that CREATEs the items, asked for once after
+ * configure: what the core has to know about them. */
+#define PILEUS_ITEMS_EXTENSION "pileus.items/1"
 typedef struct pileus_items_ext {
   uint32_t size, reserved;
-  /* [block] shares parcel `from` out between itself and `to`; `fraction` of its volume leaves */
-  pileus_status (*split)(void* self, const pileus_step*, const pileus_block*, int64_t from,
-                         int64_t to, double fraction, pileus_error*);
-  /* [block] folds `from` into `into`; the core then frees `from` */
-  pileus_status (*merge)(void* self, const pileus_step*, const pileus_block*, int64_t into,
-                         int64_t from, pileus_error*);
+  int64_t most_per_parcel; /* longer lists are shortened once a step; 0: never */
+  double budget_scale;     /* amounts over it are in the unit of volume times mass fraction: the
+                            * density of the air for items with a mass; above 0 */
 } pileus_items_ext;
+
+/* Extension of the host "pileus.item_lists/1", for the maker of the items in init and for operators
+ * with PILEUS_RESIZES_ITEMS, which are GLOBAL, in init and apply [step]. */
+#define PILEUS_ITEM_LISTS_EXTENSION "pileus.item_lists/1"
+typedef struct pileus_item_lists_ext {
+  uint32_t size, reserved;
+  void* impl;          /* the core's own */
+  double budget_scale; /* of pileus_items_ext, as the maker of the items has said */
+  /* Replaces the lists of all parcels: parcel p gets count[p] items, and new item k, parcel after
+   * parcel, is a copy of the old item source[k] or, where that is negative, all zeros; source NULL:
+   * all are. `block` has to be that of the running call; its ITEM views, item_begin and item_count
+   * are those of the new lists afterwards. */
+  pileus_status (*regroup)(const struct pileus_item_lists_ext*, const pileus_block* block,
+                           const int32_t* count, const int64_t* source, pileus_error*);
+} pileus_item_lists_ext;
 
 /* Extension of the host "pileus.mesh/1": between parcels and mesh with the core's own weights, for
  * GLOBAL operators [step]. A field has one record of `width` doubles per node; records of a column

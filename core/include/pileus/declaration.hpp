@@ -44,6 +44,12 @@ class Declaration {
     Quantity& extensive(const char* budget = nullptr) {
       return row_.nature = PILEUS_EXTENSIVE, row_.budget = budget, *this;
     }
+    /// Of each of the things that an item stands for.
+    Quantity& of_each(const char* multiplicity, const char* budget = nullptr) {
+      row_.nature = PILEUS_INTENSIVE, row_.weight = multiplicity, row_.budget = budget;
+      return *this;
+    }
+    Quantity& label() { return row_.nature = PILEUS_LABEL, *this; }
     /// Not called for: exists (Block::has) if another operator or the scene brings it about; one
     /// that is updated exists only where parcels carry it, not where it is derived.
     Quantity& optional() { return row_.access |= PILEUS_OPTIONAL, *this; }
@@ -107,6 +113,24 @@ class Declaration {
   /// The same interpolated back to the parcels.
   Quantity reads_mesh_at_parcel(const char* name, const char* units) {
     return touches(name, units, PILEUS_READ).place(PILEUS_MESH_AT_PARCEL);
+  }
+
+  /// How many things each item of the parcels' lists stands for: the quantity that makes items.
+  Quantity owns_items(const char* multiplicity) {
+    return touches(multiplicity, "1", PILEUS_READ | PILEUS_WRITE | PILEUS_CREATE, PILEUS_EXTENSIVE)
+        .place(PILEUS_ITEM)
+        .type(PILEUS_I64);
+  }
+  /// Another number of every item; state with of_each() or label() what it is.
+  Quantity owns_of_items(const char* name, const char* units) {
+    return owns(name, units).place(PILEUS_ITEM);
+  }
+  /// The same of items that another operator owns; the multiplicity is of type(PILEUS_I64).
+  Quantity reads_of_items(const char* name, const char* units) {
+    return reads(name, units).place(PILEUS_ITEM);
+  }
+  Quantity updates_of_items(const char* name, const char* units) {
+    return updates(name, units).place(PILEUS_ITEM);
   }
 
   Parameter number(const char* name, const char* units, double fallback) {

@@ -89,7 +89,17 @@ class Block {
   /// Totals of a quantity of the ground declared with accumulates, to be added to: element
   /// x + cells[0]·y belongs to that column of the mesh, and there are elements(slot) of them.
   double* accumulator(Slot slot) const { return dense<double>(slot, PILEUS_ADD); }
-  /// Number of values of a quantity: parcels, or columns of the mesh for one of the ground.
+  /// The items of a parcel, as positions in quantities of items; in and out give those as well.
+  std::int64_t item_begin(std::int64_t parcel) const { return raw_.item_begin[parcel]; }
+  std::int64_t item_end(std::int64_t parcel) const {
+    return raw_.item_begin[parcel] + raw_.item_count[parcel];
+  }
+  /// The multiplicity of items: whole numbers.
+  const std::int64_t* whole_in(Slot slot) const {
+    return whole<const std::int64_t>(slot, PILEUS_READ);
+  }
+  std::int64_t* whole_out(Slot slot) const { return whole<std::int64_t>(slot, PILEUS_WRITE); }
+  /// Number of values of a quantity: parcels, items, or columns of the mesh for one of the ground.
   std::int64_t elements(Slot slot) const { return view(slot).count; }
   /// The same for quantities with components or another element type.
   template <class T>
@@ -152,6 +162,15 @@ class Block {
     return static_cast<T*>(found.data);
   }
 
+  template <class T>
+  T* whole(Slot slot, std::uint32_t access) const {
+    const pileus_view& found = checked(slot, access);
+    if (found.type != PILEUS_I64 || found.stride != sizeof(std::int64_t)) {
+      throw Failure("a quantity that is not a dense array of whole numbers was used as one");
+    }
+    return static_cast<T*>(found.data);
+  }
+
   const pileus_block& raw_;
   const pileus_host& host_;
 };
@@ -180,23 +199,52 @@ class Operator {
   const std::string& text(Param p) const { return text_[p.index]; }
   std::span<const double> list(Param p) const { return list_[p.index]; }
 
-  /// Calls body(i) for i = 0 … n−1 on all threads; for operators of global scope, in `apply`. The
-  /// result for i must not depend on other calls.
+  /// Calls body(i) for i = 0 … n−1 on all threads; for operators of global scope, in `apply`, and
+  /// for all in `init`. The result for i must not depend on other calls.
   template <class Body>
   void parallel_for(std::int64_t n, Body&& body) const {
     constexpr std::int64_t grain = 2048;
+    parallel_chunks(n, grain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) body(i);
+    });
+  }
+  /// Calls body(begin, end) for chunks of `grain`.
+  template <class Body>
+  void parallel_chunks(std::int64_t n, std::int64_t grain, Body&& body) const {
     Failure failure("");
     failure.record.size = sizeof failure.record;
     failure.status = host_->parallel_for(
         host_, n, grain,
         [](void* user, std::int64_t begin, std::int64_t end, pileus_error* error) {
-          return guarded(error, [&] {
-            for (std::int64_t i = begin; i < end; ++i)
-              (*static_cast<std::remove_reference_t<Body>*>(user))(i);
-          });
+          return guarded(error,
+                         [&] { (*static_cast<std::remove_reference_t<Body>*>(user))(begin, end); });
         },
         const_cast<void*>(static_cast<const void*>(&body)), &failure.record);
     if (failure.status != PILEUS_OK) throw failure;
+  }
+
+  /// Gives every parcel a new list of items: `count` per parcel, and for every new item, parcel
+  /// after parcel, the old one that it is a copy of, or a negative number for one of zeros. For
+  /// the maker of the items in `init`, and for operators of global scope with PILEUS_RESIZES_ITEMS;
+  /// arrays taken
+  /// from the block before are those of the old lists.
+  void regroup_items(const Block& block, std::span<const std::int32_t> count,
+                     std::span<const std::int64_t> source) const {
+    const void* found = host_->extension(host_, PILEUS_ITEM_LISTS_EXTENSION);
+    if (found == nullptr) throw Failure("this run has no items");
+    const auto* lists = static_cast<const pileus_item_lists_ext*>(found);
+    Failure failure("");
+    failure.record.size = sizeof failure.record;
+    failure.status =
+        lists->regroup(lists, &block.raw(), count.data(), source.data(), &failure.record);
+    if (failure.status != PILEUS_OK) throw failure;
+  }
+
+  /// By what amounts of items are divided to count in budgets, as the maker of the items has it.
+  double item_budget_scale() const {
+    const void* found = host_->extension(host_, PILEUS_ITEM_LISTS_EXTENSION);
+    if (found == nullptr) throw Failure("this run has no items, or they are not lent to it");
+    return static_cast<const pileus_item_lists_ext*>(found)->budget_scale;
   }
 
   /// Draws 0 … n−1 of `channel` (< 64) for one parcel at this step, each in (0,1).

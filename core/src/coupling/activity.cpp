@@ -36,6 +36,26 @@ void narrow_by(const BoundCondition& c, const double* x, std::size_t count, std:
   }
 }
 
+bool holds(std::uint32_t comparison, double x, double value) {
+  std::uint8_t mask = 1;
+  narrow_by({0, 0, 0, comparison, value, -1}, &x, 1, &mask);
+  return mask != 0;
+}
+
+/// The same for a quantity of items: one of a parcel's suffices.
+void narrow_by_items(const BoundCondition& c, const parcels::ItemLists& items, std::size_t first,
+                     std::size_t count, std::uint8_t* mask) {
+  const auto value = [&](std::int64_t i) {
+    return c.item == 0 ? static_cast<double>(items.multiplicity()[i]) : items.column(c.item - 1)[i];
+  };
+  for (std::size_t p = 0; p < count; ++p) {
+    std::int64_t i = items.begin()[first + p];
+    const std::int64_t end = i + items.count()[first + p];
+    while (i < end && !holds(c.comparison, value(i), c.value)) ++i;
+    if (i == end) mask[p] = 0;
+  }
+}
+
 /// Fills work.mask with 1 for active parcels: any clause of which all comparisons hold.
 void evaluate(const BoundOperator& bound, const parcels::Store& store, std::size_t begin,
               std::size_t count, Workspace& work) {
@@ -45,7 +65,12 @@ void evaluate(const BoundOperator& bound, const parcels::Store& store, std::size
     const std::uint32_t clause = bound.conditions[i].clause;
     for (; i < bound.conditions.size() && bound.conditions[i].clause == clause; ++i) {
       const BoundCondition& condition = bound.conditions[i];
-      narrow_by(condition, store.column(condition.column) + begin, count, work.clause_mask.data());
+      if (condition.item >= 0) {
+        narrow_by_items(condition, store.items(), begin, count, work.clause_mask.data());
+      } else {
+        narrow_by(condition, store.column(condition.column) + begin, count,
+                  work.clause_mask.data());
+      }
     }
     for (std::size_t k = 0; k < count; ++k) {
       work.mask[k] = static_cast<std::uint8_t>(work.mask[k] | work.clause_mask[k]);

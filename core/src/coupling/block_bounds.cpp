@@ -30,6 +30,7 @@ void BlockBounds::prepare(const std::vector<BoundOperator>& operators, int colum
   blocks_.resize(static_cast<std::size_t>(columns));
   for (const BoundOperator& bound : operators) {
     for (const BoundCondition& condition : bound.conditions) {
+      if (condition.column < 0) continue;
       auto& list = blocks_[static_cast<std::size_t>(condition.column)];
       if (list.size() < blocks) list.resize(blocks + blocks / 8);
     }
@@ -64,6 +65,11 @@ bool BlockBounds::rule_out(const BoundOperator& bound, const parcels::Store& sto
     for (; i < conditions.size() && conditions[i].clause == clause; ++i) {
       if (ruled_out) continue;
       const BoundCondition& c = conditions[i];
+      if (c.item >= 0) {
+        const std::int64_t* first = store.items().begin() + begin;
+        ruled_out = first[0] == first[count];
+        continue;
+      }
       const Extrema& e = extrema(store, c.column, versions[static_cast<std::size_t>(c.column)],
                                  block, begin, count);
       ruled_out = fails(c.comparison, e.low, e.high, c.value);

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <string>
 
+#include "coupling/block_attempt.hpp"
+
 namespace pileus::coupling {
 namespace {
 
@@ -57,18 +59,6 @@ bool violates(const double* x, std::size_t count, std::span<const std::uint32_t>
 
 }  // namespace
 
-/// State of one apply of one operator on one range.
-struct BlockRunner::Attempt {
-  std::size_t which;
-  const BoundOperator& bound;
-  const pileus_step& step;
-  ParcelRange range;
-  Workspace& work;
-  pileus_block record;
-  int calls = 0;
-  host::CallResult last{};
-};
-
 pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Derived what,
                                 Workspace& work) const {
   const bool diagnosing = what != Derived::none;
@@ -86,6 +76,7 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Der
     const int column = is_left_out(slot, what) ? -1 : slot.column;
     const bool writable = slot.writable && slot.derived == diagnosing;
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
+    if (slot.item >= 0) continue;
     views[s].data = column >= 0 ? store_.column(column) + range.begin : nullptr;
     views[s].count = static_cast<std::int64_t>(range.count);
     if (slot.mesh.exists()) mesh_->show(slot.mesh, range.begin, range.count, views[s]);
@@ -97,6 +88,7 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Der
   record.views = views.data();
   record.grid = grid_;
   record.ledger = work.attempt.data();
+  show_items(which, range, work, record);
   return record;
 }
 
@@ -131,6 +123,7 @@ bool BlockRunner::writes_violate(const Attempt& a, std::span<const std::uint32_t
                  a.record.uid, result))
       return true;
   }
+  if (items_violate(a, result)) return true;
   for (const std::size_t s : a.bound.accumulated) {
     const BoundSlot& slot = a.bound.slots[s];
     if (violates(surface_.values(static_cast<std::size_t>(slot.surface)).data(), surface_.columns(),
@@ -160,6 +153,9 @@ host::CallResult BlockRunner::init(std::size_t which, const pileus_step& step,
     before.emplace_back(column(w), column(w) + range.count);
   std::fill(work.attempt.begin(), work.attempt.end(), 0.0);
   const Attempt a{which, bound, step, range, work, block(which, range, Derived::none, work)};
+  const ItemExtension::Permission permission(
+      bound.creates_items || bound.resizes_items ? items_ : nullptr,
+      [&](pileus_block& record) { show_items(which, range, work, record); });
   host::CallResult result = bound.instance->init(step, a.record);
   if (!result.ok() || !writes_violate(a, {}, result)) return result;
   // As it was, so that the values it was given are not taken for those it wrote.
@@ -173,6 +169,10 @@ host::CallResult BlockRunner::call_once(const Attempt& a, std::span<const std::u
   pileus_block record = a.record;
   record.active = list.empty() ? nullptr : list.data();
   if (!list.empty()) record.active_count = static_cast<std::int64_t>(list.size());
+  const ItemExtension::Permission permission(
+      a.bound.resizes_items ? items_ : nullptr,
+      [&](pileus_block& shown) { show_items(a.which, a.range, a.work, shown); });
+  if (a.bound.resizes_items) show_items(a.which, a.range, a.work, record);
   host::CallResult result = a.bound.instance->apply(step, record, a.range.block);
   if (result.ok()) writes_violate(a, list, result);
   return result;
@@ -271,6 +271,8 @@ void BlockRunner::find_difference(const Attempt& a, AuditFinding& finding) const
       return report(a.record.uid[i], text.data());
     }
   }
+  find_difference_of_items(a, finding);
+  if (finding.found()) return;
   for (std::size_t b = 0; b < a.bound.entry->table->budgets.size(); ++b) {
     if (a.work.attempt[b] != 0)
       report(a.record.uid[0], "books a source of " + a.bound.entry->table->budgets[b]);
@@ -288,6 +290,7 @@ void BlockRunner::snapshot(const Attempt& a) const {
     std::copy_n(surface_.values(static_cast<std::size_t>(field)).data(), surface_.columns(),
                 a.work.surface_snapshot.data() + k * surface_.columns());
   }
+  if (!a.bound.kept_items.empty()) snapshot_items(a);
 }
 
 void BlockRunner::restore(const Attempt& a, std::span<const std::uint32_t> list) const {
@@ -306,6 +309,7 @@ void BlockRunner::restore(const Attempt& a, std::span<const std::uint32_t> list)
     std::copy_n(a.work.surface_snapshot.data() + k * surface_.columns(), surface_.columns(),
                 surface_.values(static_cast<std::size_t>(field)).data());
   }
+  if (!a.bound.kept_items.empty()) restore_items(a, list);
 }
 
 /// Books sources as declared and changes as differences parcel by parcel, whose rounding error is
@@ -322,6 +326,7 @@ void BlockRunner::book(const Attempt& a, BlockBooks* books) const {
     }
     books[entry.budget].change += change;
   }
+  book_items(a, books);
   for (std::size_t b = 0; b < a.bound.entry->table->budgets.size(); ++b) {
     books[b].source += a.work.ledger[b];
   }

@@ -40,10 +40,16 @@ inline bool is_left_out(const BoundSlot& slot, Derived what) {
 
 class BlockRunner {
  public:
-  /// `mesh` is null when no operator reads the mesh.
+  /// `mesh` is null when no operator reads the mesh, `items` in a run without any.
   BlockRunner(const std::vector<BoundOperator>& operators, parcels::Store& store,
-              SurfaceFields& surface, const pileus_grid* grid, const MeshQuantities* mesh)
-      : operators_(operators), store_(store), surface_(surface), grid_(grid), mesh_(mesh) {}
+              SurfaceFields& surface, const pileus_grid* grid, const MeshQuantities* mesh,
+              ItemExtension* items)
+      : operators_(operators),
+        store_(store),
+        surface_(surface),
+        grid_(grid),
+        mesh_(mesh),
+        items_(items) {}
 
   /// Runs the init hook and checks what it wrote.
   host::CallResult init(std::size_t which, const pileus_step& step, const ParcelRange& range,
@@ -71,6 +77,13 @@ class BlockRunner {
 
  private:
   struct Attempt;
+  void show_items(std::size_t which, const ParcelRange& range, Workspace& work,
+                  pileus_block& record) const;
+  bool items_violate(const Attempt& a, host::CallResult& result) const;
+  void snapshot_items(const Attempt& a) const;
+  void restore_items(const Attempt& a, std::span<const std::uint32_t> list) const;
+  void book_items(const Attempt& a, BlockBooks* books) const;
+  void find_difference_of_items(const Attempt& a, AuditFinding& finding) const;
   host::CallResult call_once(const Attempt& a, std::span<const std::uint32_t> list,
                              const pileus_step& step) const;
   bool try_level(Attempt& a, std::span<const std::uint32_t> list, int level) const;
@@ -89,6 +102,7 @@ class BlockRunner {
   SurfaceFields& surface_;
   const pileus_grid* grid_;
   const MeshQuantities* mesh_;
+  ItemExtension* items_;
 };
 
 }  // namespace pileus::coupling

@@ -17,7 +17,7 @@ void bind_surface_slot(BoundOperator& bound, std::size_t number, const parcels::
                        const SurfaceFields& surface, BoundSlot& slot) {
   slot.surface = surface.find(bound.entry->table->quantities[number].name);
   if ((bound.entry->table->quantities[number].access & PILEUS_READ) != 0)
-    bound.read_columns.push_back(store.column_count() + slot.surface);
+    bound.read_columns.push_back(version_of_surface(store, slot.surface));
   if (slot.writable) bound.accumulated.push_back(number);
 }
 
@@ -55,6 +55,31 @@ int find_parcel_column(const BoundOperator& bound, const pileus_quantity& row,
   return column >= 0 && optional && writes && is_derived(store, column) ? -1 : column;
 }
 
+/// Binds a quantity of items, which the plan has seen to exist.
+void bind_item_slot(BoundOperator& bound, std::size_t number, const parcels::Store& store,
+                    const SurfaceFields& surface, BoundSlot& slot) {
+  const parcels::ItemLists& items = store.items();
+  const char* name = bound.entry->table->quantities[number].name;
+  const bool counts = items.declaration().multiplicity == name;
+  if (!counts && items.find_column(name) < 0) return;  // optional, and nobody brings it about
+  slot.item = counts ? 0 : items.find_column(name) + 1;
+  bound.read_columns.push_back(version_of_item(store, surface, slot.item));
+  if (!slot.writable) return;
+  bound.written_items.push_back(number);
+  bound.kept_items.push_back(slot.item);
+  const std::uint32_t access = bound.entry->table->quantities[number].access;
+  if (counts && (access & PILEUS_CREATE) != 0) bound.creates_items = true;
+}
+
+/// Whoever gives parcels other items changes all quantities of them.
+void bind_resizing(BoundOperator& bound, const parcels::Store& store) {
+  bound.resizes_items =
+      (bound.op().flags & PILEUS_RESIZES_ITEMS) != 0 && item_quantities(store) > 0;
+  if (!bound.resizes_items) return;
+  bound.kept_items.clear();
+  for (int q = 0; q < item_quantities(store); ++q) bound.kept_items.push_back(q);
+}
+
 MeshSlot find_mesh_slot(const BoundOperator& bound, const pileus_quantity& row,
                         const parcels::Store& store, const BoundMesh& mesh) {
   MeshSlot slot;
@@ -83,6 +108,8 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
     const bool exists = bound.entry->exists(i);
     if (exists && row.place == PILEUS_SURFACE) {
       bind_surface_slot(bound, i, store, surface, slot);
+    } else if (exists && row.place == PILEUS_ITEM) {
+      if (item_quantities(store) > 0) bind_item_slot(bound, i, store, surface, slot);
     } else if (exists && row.place != PILEUS_PARCEL) {
       slot.mesh = find_mesh_slot(bound, row, store, mesh);
       if (slot.mesh.exists()) bound.mesh.push_back(slot.mesh);
@@ -103,16 +130,17 @@ void bind_conditions(BoundOperator& bound) {
   const host::OperatorTable& table = *bound.entry->table;
   for (const pileus_condition& row : table.active_if) {
     const int slot = table.find_quantity(row.quantity);
-    const int column = bound.slots[static_cast<std::size_t>(slot)].column;
-    if (column < 0) continue;  // a clause on a quantity that does not exist: see below
+    const BoundSlot& compared = bound.slots[static_cast<std::size_t>(slot)];
+    if (!compared.is_compared()) continue;  // a clause on what does not exist: see below
     const double value = row.parameter != nullptr
                              ? bound.entry->values.numbers()[table.find_parameter(row.parameter)]
                              : row.value;
-    bound.conditions.push_back({static_cast<std::size_t>(slot), column, row.clause, row.op, value});
+    bound.conditions.push_back({static_cast<std::size_t>(slot), compared.column, row.clause, row.op,
+                                value, compared.item});
   }
   // A comparison with an absent quantity is false, so its whole clause is.
   for (const pileus_condition& row : table.active_if) {
-    if (bound.slots[static_cast<std::size_t>(table.find_quantity(row.quantity))].column >= 0)
+    if (bound.slots[static_cast<std::size_t>(table.find_quantity(row.quantity))].is_compared())
       continue;
     std::erase_if(bound.conditions,
                   [&](const BoundCondition& c) { return c.clause == row.clause; });
@@ -130,6 +158,13 @@ void bind_budgets(BoundOperator& bound) {
     const auto found = std::find(table.budgets.begin(), table.budgets.end(), row.budget);
     bound.budgeted.push_back({w, static_cast<std::size_t>(found - table.budgets.begin()),
                               row.nature != PILEUS_EXTENSIVE});
+  }
+  for (const std::size_t s : bound.written_items) {
+    const pileus_quantity& row = table.quantities[s];
+    if (row.budget == nullptr) continue;
+    const auto found = std::find(table.budgets.begin(), table.budgets.end(), row.budget);
+    bound.budgeted_items.push_back(
+        {bound.slots[s].item, static_cast<std::size_t>(found - table.budgets.begin())});
   }
 }
 
@@ -186,14 +221,17 @@ BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& st
   bound.entry = &entry;
   bound.stream = stream;
   bind_slots(bound, store, surface, mesh);
+  bind_resizing(bound, store);
   // What follows from nothing is derived again when the parcels are others.
   if (bound.read_columns.empty()) bound.read_columns.push_back(store.dimension() - 1);
   bind_conditions(bound);
   follow_effects(bound);
   bind_budgets(bound);
   const bool lend_mesh = scope == PILEUS_GLOBAL && mesh.extension != nullptr;
+  const bool lend_items = (bound.creates_items || bound.resizes_items) && mesh.items != nullptr;
   bound.instance = std::make_unique<host::Instance>(
-      entry.table, host::Lent{stop, lend_mesh ? mesh.extension->table() : nullptr});
+      entry.table, host::Lent{stop, lend_mesh ? mesh.extension->table() : nullptr,
+                              lend_items ? mesh.items->table() : nullptr});
   bound.instance->configure(entry.values);
   return bound;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "coupling/item_snapshot.hpp"
+
 namespace pileus::coupling {
 namespace {
 
@@ -53,6 +55,33 @@ void copy_inputs(const BoundOperator& bound, const parcels::Store& store, const 
   }
 }
 
+/// The items of the range: how many each parcel has, and what the operator knows of each.
+void copy_items(const BoundOperator& bound, const parcels::Store& store, const ParcelRange& range,
+                FailureBundle& bundle) {
+  const parcels::ItemLists& items = store.items();
+  if (items.parcels() < range.begin + range.count) return;
+  const std::int64_t first = items.begin()[range.begin];
+  const std::int64_t end = items.begin()[range.begin + range.count];
+  bool any = false;
+  for (std::size_t s = 0; s < bound.slots.size(); ++s) {
+    const BoundSlot& slot = bound.slots[s];
+    if (slot.item < 0) continue;
+    any = true;
+    const pileus_quantity& row = bound.entry->table->quantities[s];
+    std::vector<double> values;
+    for (std::int64_t i = first; i < end; ++i)
+      values.push_back(slot.item == item_multiplicity ? static_cast<double>(items.multiplicity()[i])
+                                                      : items.column(slot.item - 1)[i]);
+    bundle.columns.push_back({row.name, row.units, slot.writable, std::move(values)});
+  }
+  if (any)
+    bundle.columns.push_back(
+        {"item_count",
+         "1",
+         false,
+         {items.count() + range.begin, items.count() + range.begin + range.count}});
+}
+
 /// Looks for a value that was broken before the call; then the operator is not to blame.
 void find_broken_input(const BoundOperator& bound, const parcels::Store& store,
                        const ParcelRange& range, FailureBundle& bundle) {
@@ -88,7 +117,10 @@ std::shared_ptr<const FailureBundle> make_bundle(const BoundOperator& bound,
   if (slot >= 0 && static_cast<std::size_t>(slot) < bound.slots.size()) {
     bundle->quantity = bound.entry->table->quantities[static_cast<std::size_t>(slot)].name;
   }
-  if (range.block >= 0) copy_inputs(bound, store, range, *bundle);
+  if (range.block >= 0) {
+    copy_inputs(bound, store, range, *bundle);
+    copy_items(bound, store, range, *bundle);
+  }
   find_broken_input(bound, store, range, *bundle);
   return bundle;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
@@ -122,25 +123,37 @@ void OperatorSequence::bind(parcels::Store& store, const std::optional<pileus_gr
   progress_.clear();
   mesh_extension_ = mesh != nullptr ? std::make_unique<MeshExtension>(*mesh, store) : nullptr;
   mesh_quantities_ = mesh != nullptr ? std::make_unique<MeshQuantities>(*mesh, store) : nullptr;
-  const BoundMesh bound_mesh{mesh_quantities_.get(), mesh_extension_.get()};
+  item_extension_ = store.items().exist() ? std::make_unique<ItemExtension>(store) : nullptr;
+  const BoundMesh bound_mesh{mesh_quantities_.get(), mesh_extension_.get(), item_extension_.get()};
   for (const OperatorEntry& entry : operators_) {
     bound_.push_back(
         bind_operator(entry, store, surface_, bound_mesh, stream_of(entry.name), options_.stop));
     OperatorProgress& progress = progress_.emplace_back();
     for (const BoundCondition& c : bound_.back().conditions) {
-      progress.condition_columns.push_back(c.column);
+      progress.condition_columns.push_back(c.item >= 0 ? version_of_item(store, surface_, c.item)
+                                                       : c.column);
     }
+    if (bound_.back().creates_items) take_over_items(bound_.back());
     progress.change.resize(entry.table->budgets.size());
     progress.source.resize(entry.table->budgets.size());
   }
   keep_what_closures_read(bound_);
   runner_ = std::make_unique<BlockRunner>(bound_, store, surface_, grid_ ? &*grid_ : nullptr,
-                                          mesh_quantities_.get());
-  versions_.assign(static_cast<std::size_t>(store.column_count()) + surface_.list().size(),
-                   next_version_++);
+                                          mesh_quantities_.get(), item_extension_.get());
+  versions_.assign(
+      static_cast<std::size_t>(version_of_item(store, surface_, item_quantities(store))),
+      next_version_++);
   previous_height_ = find_column(store, previous_height_name);
   workspaces_.clear();
   stale_.reserve(plan_.closures.size());
+}
+
+/// What the operator that makes the items says about them.
+void OperatorSequence::take_over_items(const BoundOperator& maker) {
+  const pileus_items_ext& said = maker.instance->items();
+  store_->items().set_most_per_parcel(said.most_per_parcel);
+  store_->items().set_budget_scale(said.budget_scale);
+  item_extension_->set_budget_scale(said.budget_scale);
 }
 
 double OperatorSequence::dt_limit() const {
@@ -165,9 +178,10 @@ void OperatorSequence::start(const StepTime& step, bool new_run) {
   prepare_workspaces();
   if (new_run) {
     surface_.start(surface_.columns());
+    if (store_->items().exist()) store_->items().start(store_->size());
     remember_heights();
   }
-  for (std::size_t which = 0; which < bound_.size(); ++which) {
+  for (const std::size_t which : order_of_init()) {
     BoundOperator& bound = bound_[which];
     if (!new_run) {
       bound.instance->resume();
@@ -186,6 +200,15 @@ void OperatorSequence::start(const StepTime& step, bool new_run) {
   }
   population_changed();
   diagnose(step);
+}
+
+/// Whoever makes items comes first: others may have something to say about each.
+std::vector<std::size_t> OperatorSequence::order_of_init() const {
+  std::vector<std::size_t> order(bound_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t which) { return bound_[which].creates_items; });
+  return order;
 }
 
 /// Somebody may have raised the number of threads since the workspaces were made.
@@ -434,9 +457,11 @@ void OperatorSequence::close_books(std::size_t which, std::size_t blocks) {
     versions_[static_cast<std::size_t>(bound.slots[s].column)] = next_version_;
   }
   for (const std::size_t s : bound.accumulated) {
-    const int field = store_->column_count() + bound.slots[s].surface;
+    const int field = version_of_surface(*store_, bound.slots[s].surface);
     versions_[static_cast<std::size_t>(field)] = next_version_;
   }
+  for (const int item : bound.kept_items)
+    versions_[static_cast<std::size_t>(version_of_item(*store_, surface_, item))] = next_version_;
   ++next_version_;
 }
 

@@ -69,6 +69,8 @@ class OperatorSequence {
 
   /// The scalars to build the store with.
   const std::vector<parcels::Scalar>& required_scalars() const { return plan_.scalars; }
+  /// The items to build the store with.
+  const parcels::ItemDeclaration& required_items() const { return plan_.items; }
   /// The declared quantities of the surface; empty of values before bind(). Whoever restores them
   /// does so before resume().
   SurfaceFields& surface() { return surface_; }
@@ -129,6 +131,7 @@ class OperatorSequence {
   void prepare_workspaces();
   pileus_step step_record(const BoundOperator& bound, const StepTime& at, bool second_half) const;
   void start(const StepTime& step, bool new_run);
+  std::vector<std::size_t> order_of_init() const;
   void refresh(const StepTime& step, Derived what);
   void run_closures(const StepTime& step, Derived what);
   void match_threads();
@@ -145,6 +148,7 @@ class OperatorSequence {
   void close_books(std::size_t which, std::size_t blocks);
   std::uint64_t version_of(const std::vector<int>& columns) const;
   void touch_core();
+  void take_over_items(const BoundOperator& maker);
   void remember_heights();
   void clear_withheld();
   void throw_first_failure();
@@ -163,6 +167,7 @@ class OperatorSequence {
   int previous_height_ = -1;  // column, if an operator asks for it
   std::unique_ptr<MeshExtension> mesh_extension_;
   std::unique_ptr<MeshQuantities> mesh_quantities_;  // null without a mesh
+  std::unique_ptr<ItemExtension> item_extension_;    // null without items
   std::vector<BoundOperator> bound_;
   std::unique_ptr<BlockRunner> runner_;
   BlockBounds bounds_;

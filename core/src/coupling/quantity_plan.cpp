@@ -58,6 +58,7 @@ class Planner {
     for (const std::string& name : surface_claims_.names) {
       plan.surface.push_back(unite_on_surface(name));
     }
+    plan.items = unite_items();
     plan.closures = order_closures();
     if (!problems_.empty()) throw Error(ExitCode::usage, problems_);
     return plan;
@@ -73,10 +74,15 @@ class Planner {
         const pileus_quantity& row = table.quantities[i];
         if (!entry.exists(i)) continue;
         if (!check_support(entry, row)) continue;
-        if (row.place != PILEUS_SURFACE && is_core_quantity(row.name)) continue;
+        if (row.place == PILEUS_PARCEL || row.place == PILEUS_MESH ||
+            row.place == PILEUS_MESH_AT_PARCEL) {
+          if (is_core_quantity(row.name)) continue;
+        }
         check_units(entry, row);
         if (row.place == PILEUS_SURFACE) {
           surface_claims_.add({&entry, &row});
+        } else if (row.place == PILEUS_ITEM) {
+          item_claims_.add({&entry, &row});
         } else if (row.place == PILEUS_PARCEL || !mesh::is_flow_quantity(row.name)) {
           claims_.add({&entry, &row});
         }
@@ -103,6 +109,7 @@ class Planner {
       return false;
     };
     if (row.place == PILEUS_SURFACE) return check_surface_support(entry, row);
+    if (row.place == PILEUS_ITEM) return true;  // the plugin's table has been checked
     const bool on_mesh = row.place == PILEUS_MESH || row.place == PILEUS_MESH_AT_PARCEL;
     if (row.place != PILEUS_PARCEL && !on_mesh) {
       return refuse("elsewhere than on the parcels, the surface or the mesh");
@@ -207,6 +214,80 @@ class Planner {
     return {name, claims.front().row->units, owner != nullptr ? owner->row->initial : 0.0};
   }
 
+  /// One operator makes the items, each of their quantities has an owner, the others agree.
+  parcels::ItemDeclaration unite_items() {
+    parcels::ItemDeclaration items;
+    const OperatorEntry* maker = nullptr;
+    for (const std::string& name : item_claims_.names) {
+      const std::vector<Claim>& claims = item_claims_.of.at(name);
+      const Claim* owner = find_owner(name, claims);
+      const bool optional =
+          std::all_of(claims.begin(), claims.end(), [](const Claim& c) { return c.optional(); });
+      if (owner == nullptr && optional) continue;
+      if (owner == nullptr) {
+        complain(
+            fmt::format("operator '{}' needs '{}' of items, which no operator of the scene makes",
+                        claims.front().by->name, name));
+        continue;
+      }
+      maker = owner->by;
+      for (const Claim& claim : claims) {
+        if (claim.row->type != owner->row->type)
+          complain(fmt::format("'{}' and '{}' disagree on the type of '{}'", owner->by->name,
+                               claim.by->name, name));
+        check_agreement(name, *owner, claim);
+      }
+      if (is_core_quantity(name) || claims_.know(name) || initial_.count(name) > 0)
+        complain(fmt::format("operator '{}' declares '{}' of items, but parcels carry it",
+                             owner->by->name, name));
+      add_to_items(name, *owner, items);
+    }
+    if (maker != nullptr && items.multiplicity.empty())
+      complain(
+          fmt::format("operator '{}' makes items without a multiplicity (one of type i64, "
+                      "extensive)",
+                      maker->name));
+    check_weights(items);
+    return items;
+  }
+
+  void add_to_items(const std::string& name, const Claim& owner, parcels::ItemDeclaration& items) {
+    const pileus_quantity& row = *owner.row;
+    if (row.type == PILEUS_I64) {
+      if (row.nature != PILEUS_EXTENSIVE || !items.multiplicity.empty())
+        complain(
+            fmt::format("operator '{}' declares '{}' of items as a whole number; their "
+                        "multiplicity is one, extensive, and the only one",
+                        owner.by->name, name));
+      items.multiplicity = name;
+      return;
+    }
+    parcels::ItemColumn column{name,
+                               row.units,
+                               parcels::ItemColumn::Kind::of_each,
+                               row.budget != nullptr ? row.budget : "",
+                               row.low,
+                               row.high};
+    const bool height = name == height_within_parcel_name;
+    if (height) column.kind = parcels::ItemColumn::Kind::height;
+    if (row.nature != (height ? PILEUS_LABEL : PILEUS_INTENSIVE))
+      complain(fmt::format(
+          "operator '{}' declares '{}' of items with a nature it cannot have: {}", owner.by->name,
+          name,
+          height ? "a height is a label" : "what belongs to each thing of an item is intensive"));
+    items.columns.push_back(column);
+  }
+
+  void check_weights(const parcels::ItemDeclaration& items) {
+    for (const std::string& name : item_claims_.names)
+      for (const Claim& claim : item_claims_.of.at(name))
+        if (claim.row->nature == PILEUS_INTENSIVE && items.multiplicity != claim.row->weight)
+          complain(
+              fmt::format("operator '{}' declares '{}' of items with another weight than their "
+                          "multiplicity",
+                          claim.by->name, name));
+  }
+
   parcels::Scalar unite(const std::string& name) {
     const std::vector<Claim>& claims = claims_.of.at(name);
     const Claim* owner = find_owner(name, claims);
@@ -295,7 +376,7 @@ class Planner {
 
   const std::vector<OperatorEntry>& operators_;
   std::set<std::string> initial_;
-  Claims claims_, surface_claims_;
+  Claims claims_, surface_claims_, item_claims_;
   std::string problems_;
 };
 

@@ -20,11 +20,15 @@ inline constexpr const char* volume_name = "parcel_volume";
 /// parcels whose ascent it has accounted for.
 inline constexpr const char* previous_height_name = "previous_height";
 
+/// Where an item is: its height above its parcel's centre over the parcel's vertical half-extent.
+inline constexpr const char* height_within_parcel_name = "height_within_parcel";
+
 /// What the sequence of operators asks of the parcels.
 struct QuantityPlan {
   std::vector<parcels::Scalar> scalars;  // in the order of their declaration
   std::vector<SurfaceQuantity> surface;  // likewise
-  std::vector<std::size_t> closures;     // operators with diagnose, providers before readers
+  parcels::ItemDeclaration items;     // of the lists that parcels own; none: without multiplicity
+  std::vector<std::size_t> closures;  // operators with diagnose, providers before readers
 };
 
 /// Works out the union of the declared quantities that exist in this run.

@@ -25,6 +25,25 @@ double total_of(const parcels::Store& store, const parcels::Scalar& scalar) {
   return sum.value();
 }
 
+/// Multiplicity times value of all items, in the unit of budgets.
+double total_of_items(const parcels::ItemLists& items, int column) {
+  const std::int64_t* multiplicity = items.multiplicity();
+  const double* x = items.column(column);
+  const CompensatedSum sum = ordered_reduce(
+      items.size(), CompensatedSum{},
+      [&](std::size_t begin, std::size_t end) {
+        CompensatedSum part;
+        for (std::size_t i = begin; i < end; ++i)
+          part.add(static_cast<double>(multiplicity[i]) * x[i]);
+        return part;
+      },
+      [](CompensatedSum a, const CompensatedSum& b) {
+        a.add(b.value());
+        return a;
+      });
+  return sum.value() / items.budget_scale();
+}
+
 }  // namespace
 
 Ledger OperatorSequence::ledger() const {
@@ -65,15 +84,19 @@ Ledger OperatorSequence::ledger() const {
     ledger.operators.push_back(std::move(entry));
   }
   if (store_ == nullptr) return ledger;
-  for (const parcels::Scalar& scalar : store_->scalars()) {
-    if (scalar.budget.empty() || scalar.nature == parcels::Nature::derived) continue;
+  const auto add_to_total = [&](const std::string& budget, double amount) {
     auto found = std::find_if(ledger.totals.begin(), ledger.totals.end(),
-                              [&](const BudgetTotal& t) { return t.budget == scalar.budget; });
-    if (found == ledger.totals.end()) {
-      found = ledger.totals.insert(ledger.totals.end(), {scalar.budget, 0.0});
-    }
-    found->total += total_of(*store_, scalar);
-  }
+                              [&](const BudgetTotal& t) { return t.budget == budget; });
+    if (found == ledger.totals.end()) found = ledger.totals.insert(found, {budget, 0.0});
+    found->total += amount;
+  };
+  for (const parcels::Scalar& scalar : store_->scalars())
+    if (!scalar.budget.empty() && scalar.nature != parcels::Nature::derived)
+      add_to_total(scalar.budget, total_of(*store_, scalar));
+  const parcels::ItemLists& items = store_->items();
+  for (std::size_t c = 0; c < items.declaration().columns.size(); ++c)
+    if (const std::string& budget = items.declaration().columns[c].budget; !budget.empty())
+      add_to_total(budget, total_of_items(items, static_cast<int>(c)));
   return ledger;
 }
 

@@ -11,7 +11,10 @@ std::vector<pileus_view> static_views(const BoundOperator& bound) {
   view.stride = sizeof(double);
   view.type = PILEUS_F64;
   view.components = 1;
-  return std::vector<pileus_view>(bound.slots.size(), view);
+  std::vector<pileus_view> views(bound.slots.size(), view);
+  for (std::size_t s = 0; s < views.size(); ++s)
+    if (bound.slots[s].item == item_multiplicity) views[s].type = PILEUS_I64;
+  return views;
 }
 
 }  // namespace

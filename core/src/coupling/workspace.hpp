@@ -8,6 +8,7 @@
 
 #include "base/aligned_array.hpp"
 #include "coupling/bound_operator.hpp"
+#include "coupling/item_snapshot.hpp"
 
 namespace pileus::coupling {
 
@@ -65,6 +66,8 @@ struct alignas(cache_line_bytes) Workspace {
   AlignedArray<double> snapshot;                // of the written columns, one after another
   std::size_t snapshot_stride = 0;              // parcels per column in it
   AlignedArray<double> surface_snapshot;        // of the surface fields added to
+  ItemSnapshot item_snapshot;                   // of the items' quantities written
+  std::vector<std::int64_t> item_begin;         // per parcel of the block, from its first item on
   std::vector<std::uint32_t> active, everyone, skipped;  // index lists of up to a block
   std::vector<std::uint8_t> mask, clause_mask;
   std::vector<double> ledger, attempt;             // sources: of the block, of the present attempt

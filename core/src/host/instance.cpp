@@ -114,7 +114,29 @@ void Instance::configure(ParameterValues values) {
     return table_->op.configure(self_, &view, error);
   });
   if (!result.ok()) refuse("configure", result);
+  ask_about_items();
   state_ = after(state_, LifeCall::configure);
+}
+
+/// Errors  Error(ExitCode::plugin) if it says something impossible
+void Instance::ask_about_items() {
+  if (table_->op.extension == nullptr) return;
+  const void* found = nullptr;
+  const CallResult result = call(LifeCall::configure, 0, -1, [&](pileus_error*) {
+    found = table_->op.extension(self_, PILEUS_ITEMS_EXTENSION);
+    return pileus_status{PILEUS_OK};
+  });
+  if (!result.ok()) refuse("extension", result);
+  if (found == nullptr) return;
+  const auto* given = static_cast<const pileus_items_ext*>(found);
+  const bool whole = given->size >= sizeof items_;
+  if (!whole || given->most_per_parcel < 0 || !(given->budget_scale > 0))
+    throw Error(ExitCode::plugin, std::string("plugin ") + table_->op.id + " answers " +
+                                      PILEUS_ITEMS_EXTENSION +
+                                      " with a table whose size, most_per_parcel or budget_scale "
+                                      "is impossible (library '" +
+                                      table_->library + "')");
+  items_ = *given;
 }
 
 CallResult Instance::init(const pileus_step& step, const pileus_block& whole) {

@@ -43,6 +43,10 @@ class Instance {
   /// Hands over the parameters. Errors  Error(ExitCode::plugin) with the plugin's own sentence
   void configure(ParameterValues values);
 
+  /// What the plugin says about the items it owns, asked for by configure: without an answer, no
+  /// bound and a scale of one.
+  const pileus_items_ext& items() const { return items_; }
+
   /// Starts a new run; operators without the hook are ready at once.
   CallResult init(const pileus_step& step, const pileus_block& whole);
   /// Starts from a checkpoint.
@@ -56,11 +60,13 @@ class Instance {
  private:
   template <class Hook>
   CallResult call(LifeCall which, std::uint64_t step, std::int64_t block, Hook&& hook) const;
+  void ask_about_items();
   [[noreturn]] void refuse(const char* phase, const CallResult& result) const;
 
   std::shared_ptr<const OperatorTable> table_;
   Services services_;
   std::optional<ParameterValues> values_;  // plugins may keep what they were shown
+  pileus_items_ext items_{sizeof(pileus_items_ext), 0, 0, 1.0};
   void* self_ = nullptr;
   LifeState state_ = LifeState::none;
 };

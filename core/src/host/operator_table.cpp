@@ -38,6 +38,8 @@ void check_identity(const OperatorTable& t, Complaints& c) {
   constexpr std::uint32_t known =
       PILEUS_SERIAL | PILEUS_STIFF | PILEUS_RANDOM | PILEUS_RESIZES_ITEMS;
   c.require((op.flags & ~known) == 0, "flags", "hold an unknown bit");
+  c.require((op.flags & PILEUS_RESIZES_ITEMS) == 0 || op.scope == PILEUS_GLOBAL, "flags",
+            "say that it resizes items, which only an operator of global scope may do");
 }
 
 void check_hooks(const OperatorTable& t, Complaints& c) {
@@ -76,6 +78,14 @@ void check_nature(const pileus_quantity& q, const std::string& place, Complaints
   }
 }
 
+void check_item(const pileus_quantity& q, const std::string& place, Complaints& c) {
+  c.require(q.nature != PILEUS_DERIVED, place, "belongs to items, of which nothing is derived");
+  c.require((q.access & PILEUS_ADD) == 0, place, "belongs to items, which are not added to");
+  c.require(q.type == PILEUS_F64 || q.type == PILEUS_I64, place,
+            "belongs to items, so it is of type f64 or, as the multiplicity, i64");
+  c.require(q.components == 1, place, "belongs to items, so it has one component");
+}
+
 void check_quantity(const pileus_quantity& q, const std::string& place, const OperatorTable& t,
                     Complaints& c) {
   c.require(is_identifier(c.text(q.name, place + " name")), place,
@@ -99,6 +109,7 @@ void check_quantity(const pileus_quantity& q, const std::string& place, const Op
             "is owned and optional at once: what is owned always exists");
   c.require((q.access & PILEUS_ON_DEMAND) == 0 || q.nature == PILEUS_DERIVED, place,
             "is given on demand, but not derived");
+  if (q.place == PILEUS_ITEM) check_item(q, place, c);
   if (q.place == PILEUS_MESH || q.place == PILEUS_MESH_AT_PARCEL) {
     c.require((q.access & ~(PILEUS_READ | PILEUS_OPTIONAL)) == 0, place,
               "lives on the mesh, which operators only read");
@@ -174,8 +185,9 @@ void check_condition(const pileus_condition& row, const std::string& place, cons
   if (slot < 0) {
     c.add(place, "compares '" + quantity + "', which the operator does not declare");
   } else {
-    c.require(t.quantities[static_cast<std::size_t>(slot)].place == PILEUS_PARCEL, place,
-              "compares '" + quantity + "', which is no quantity of the parcels");
+    const std::uint32_t where = t.quantities[static_cast<std::size_t>(slot)].place;
+    c.require(where == PILEUS_PARCEL || where == PILEUS_ITEM, place,
+              "compares '" + quantity + "', which is no quantity of the parcels or their items");
   }
   if (row.parameter != nullptr) {
     c.require(t.find_parameter(row.parameter) >= 0, place,

@@ -167,8 +167,10 @@ int Services::answer_should_stop(const pileus_host* host) {
 }
 
 const void* Services::find_extension(const pileus_host* host, const char* id) {
-  const bool mesh = id != nullptr && std::strcmp(id, PILEUS_MESH_EXTENSION) == 0;
-  return mesh ? self(host).lent_.mesh : nullptr;
+  if (id == nullptr) return nullptr;
+  if (std::strcmp(id, PILEUS_MESH_EXTENSION) == 0) return self(host).lent_.mesh;
+  if (std::strcmp(id, PILEUS_ITEM_LISTS_EXTENSION) == 0) return self(host).lent_.items;
+  return nullptr;
 }
 
 // A token is the time in nanoseconds with its top four bits replaced by the timer's number; 2^60 ns

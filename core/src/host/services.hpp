@@ -19,10 +19,11 @@ struct Span {
   double seconds = 0;  // summed over threads
 };
 
-/// What the core lends to an instance beside the services themselves; both may be null.
+/// What the core lends to an instance beside the services themselves; all may be null.
 struct Lent {
-  const std::atomic<bool>* stop = nullptr;  // answers should_stop
-  const pileus_mesh_ext* mesh = nullptr;    // the extension pileus.mesh/1
+  const std::atomic<bool>* stop = nullptr;       // answers should_stop
+  const pileus_mesh_ext* mesh = nullptr;         // the extension pileus.mesh/1
+  const pileus_item_lists_ext* items = nullptr;  // the extension pileus.item_lists/1
 };
 
 /// The service table of one instance. Does not move: the plugin keeps its address.

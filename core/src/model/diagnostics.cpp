@@ -84,6 +84,7 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
                          const std::vector<std::string>& budgets)
     : potential_energy_(scene),
       soundness_(simulation, changed),
+      item_measures_(simulation.store().items()),
       surface_(surface),
       cloud_threshold_(scene.diagnostics.cloud_threshold) {
   const parcels::Store& store = simulation.store();
@@ -156,6 +157,10 @@ void Diagnostics::add_scalars(const parcels::Store& store) {
     holds_water = holds_water || entries.water;
     scalars_.push_back(entries);
   }
+  for (const auto& [name, units, text] : item_measures_.outputs())
+    item_entries_.push_back(add(name, units, text));
+  for (const parcels::ItemColumn& column : store.items().declaration().columns)
+    holds_water = holds_water || column.budget == water_budget;
   if (holds_water) total_water_ = add("total_water", "1", "mean total water", true);
   for (const coupling::SurfaceQuantity& quantity : surface_.list())
     surface_entries_.push_back(
@@ -327,6 +332,9 @@ void Diagnostics::observe_scalars(const Simulation& simulation) {
     set(entry.high, sums.high);
     if (entry.water) total_water += mean;
   }
+  const std::vector<double> of_items = item_measures_.measure(store.items());
+  for (std::size_t k = 0; k < of_items.size(); ++k) set(item_entries_[k], of_items[k]);
+  total_water += budget_of_items(store.items(), water_budget) / simulation.domain_volume();
   if (total_water_ >= 0) set(total_water_, total_water);
 }
 

@@ -8,6 +8,7 @@
 #include "model/exact_comparison.hpp"
 #include "model/gridded_measures.hpp"
 #include "model/histogram.hpp"
+#include "model/item_measures.hpp"
 #include "model/potential_energy.hpp"
 #include "model/simulation.hpp"
 #include "model/soundness.hpp"
@@ -80,6 +81,8 @@ class Diagnostics {
   PotentialEnergy potential_energy_;
   Soundness soundness_;
   std::vector<int> soundness_entries_;
+  ItemMeasures item_measures_;
+  std::vector<int> item_entries_;
   std::vector<ExactComparison> exact_;
   std::vector<std::vector<int>> exact_entries_;
   std::vector<ModeEntries> modes_;

@@ -52,7 +52,8 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
       plan_(std::move(planned.plan)),
       sequence_(std::move(planned.operators), sequence_options(scene)),
       physics_(sequence_, planner::Tripwires(plan_)),
-      simulation_(make_simulation(scene, sequence_.required_scalars(), physics_)) {
+      simulation_(make_simulation(scene, sequence_.required_scalars(), physics_,
+                                  sequence_.required_items())) {
   sequence_.bind(simulation_->store(), simulation_->plugin_grid(), &simulation_->mesh_access());
   std::vector<std::string> budgets;
   for (const coupling::BudgetTotal& total : sequence_.ledger().totals)

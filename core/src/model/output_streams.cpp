@@ -120,7 +120,9 @@ OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simula
       fields_schedule_(scene.output.fields.every),
       parcels_schedule_(scene.output.parcels.every),
       profiles_schedule_(scene.output.profiles.every),
-      series_schedule_(scene.output.series.every) {
+      series_schedule_(scene.output.series.every),
+      spectra_schedule_(scene.output.spectra.every),
+      droplets_schedule_(scene.output.droplets.every) {
   const std::vector<output::Variable> fields = simulation.grid_fields();
   if (scene.output.fields.every > 0)
     open_fields(scene.output, simulation, directory / "fields.nc", provenance, start);
@@ -136,6 +138,7 @@ OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simula
         std::make_unique<output::ProfileFile>(directory / "profiles.nc", simulation.axes().front(),
                                               profile_variables_, provenance, start);
   }
+  open_item_streams(scene.output, simulation, directory, provenance, start);
   std::vector<output::Variable> numbers;
   for (const DiagnosticInfo& d : record.list())
     numbers.push_back({d.name, d.units, d.long_name, standard_name_of(d.name)});
@@ -158,10 +161,37 @@ void OutputStreams::open_fields(const scene::OutputControl& control, const Simul
       output::VariableSet{simulation.ground_axes(), ground_variables_});
 }
 
+void OutputStreams::open_item_streams(const scene::OutputControl& control,
+                                      const Simulation& simulation,
+                                      const output::RunDirectory& directory,
+                                      const output::Provenance& provenance, output::Start start) {
+  const parcels::Store& store = simulation.store();
+  if (control.spectra.every > 0) {
+    size_spectra_ = std::make_unique<SizeSpectra>(control.spectra, simulation);
+    const output::VariableSet& gridded = size_spectra_->gridded();
+    const output::VariableSet& means = size_spectra_->means();
+    // The axis that both have in common is written once: with the first set that has variables.
+    spectra_ = std::make_unique<output::RecordFile>(
+        directory / "spectra.nc", gridded.variables.empty() ? means : gridded,
+        gridded.variables.empty() ? output::VariableSet{} : means, provenance, encoding_of(control),
+        start);
+  }
+  if (control.droplets.every > 0) {
+    if (!store.items().exist())
+      throw Error(ExitCode::usage, "output.droplets: no operator of this run makes droplets.");
+    std::vector<output::Variable> variables = output::item_variables(store.items());
+    for (output::Variable& variable : variables) variable = described(variable);
+    droplets_ = std::make_unique<output::ItemFile>(directory / "droplets.nc", store, variables,
+                                                   control.droplets.fraction, provenance,
+                                                   encoding_of(control), start);
+  }
+}
+
 /// Profiles and the series are frequent: they take the first step at or after their time, so that
 /// they do not shorten the steps.
 double OutputStreams::next_landing_after(double time) const {
-  return std::min(fields_schedule_.next_after(time), parcels_schedule_.next_after(time));
+  return std::min({fields_schedule_.next_after(time), parcels_schedule_.next_after(time),
+                   spectra_schedule_.next_after(time), droplets_schedule_.next_after(time)});
 }
 
 void OutputStreams::write_due(Simulation& simulation, bool last) {
@@ -180,6 +210,22 @@ void OutputStreams::write_due(Simulation& simulation, bool last) {
     write_profiles(simulation);
     profiles_schedule_.done(time);
     profile_time_ = time;
+  }
+  write_item_streams(simulation, last);
+}
+
+void OutputStreams::write_item_streams(const Simulation& simulation, bool last) {
+  const double time = simulation.time();
+  if (spectra_ && (last || spectra_schedule_.due(time)) && time > spectra_time_) {
+    size_spectra_->measure(simulation, values_);
+    spectra_->append(time, values_);
+    spectra_schedule_.done(time);
+    spectra_time_ = time;
+  }
+  if (droplets_ && (last || droplets_schedule_.due(time)) && time > droplet_time_) {
+    droplets_->append(time, simulation.store());
+    droplets_schedule_.done(time);
+    droplet_time_ = time;
   }
 }
 
@@ -251,6 +297,8 @@ void OutputStreams::resume(const Record& record) {
   if (parcels_) parcels_schedule_.resume_after(parcels_->times());
   if (profiles_) profiles_schedule_.resume_after(profiles_->times());
   series_schedule_.resume_after(record.times());
+  if (spectra_) spectra_schedule_.resume_after(spectra_->times());
+  if (droplets_) droplets_schedule_.resume_after(droplets_->times());
 }
 
 std::vector<output::OutputSummary> OutputStreams::summarise() const {
@@ -262,6 +310,8 @@ std::vector<output::OutputSummary> OutputStreams::summarise() const {
   if (profiles_) add("profiles.nc", "horizontal means over time", profiles_->times().size());
   add("series.nc", "diagnostics over time", series_->times().size());
   if (parcels_) add("parcels.nc", "all parcels at some times", parcels_->times().size());
+  if (spectra_) add("spectra.nc", "size spectra of droplets over time", spectra_->times().size());
+  if (droplets_) add("droplets.nc", "droplets at some times", droplets_->times().size());
   return list;
 }
 

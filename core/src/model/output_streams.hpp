@@ -6,7 +6,9 @@
 
 #include "model/record.hpp"
 #include "model/simulation.hpp"
+#include "model/size_spectra.hpp"
 #include "output/field_file.hpp"
+#include "output/item_file.hpp"
 #include "output/parcel_file.hpp"
 #include "output/run_directory.hpp"
 #include "scene/scene.hpp"
@@ -64,16 +66,25 @@ class OutputStreams {
                    output::Start start);
   void write_fields(Simulation& simulation);
   void write_profiles(Simulation& simulation);
+  void open_item_streams(const scene::OutputControl& control, const Simulation& simulation,
+                         const output::RunDirectory& directory,
+                         const output::Provenance& provenance, output::Start start);
+  void write_item_streams(const Simulation& simulation, bool last);
 
   const coupling::SurfaceFields& surface_;
   Schedule fields_schedule_, parcels_schedule_, profiles_schedule_, series_schedule_;
+  Schedule spectra_schedule_, droplets_schedule_;
   std::vector<output::Variable> field_variables_, ground_variables_, profile_variables_;
   std::unique_ptr<output::FieldFile> fields_;
   std::unique_ptr<output::ParcelFile> parcels_;
   std::unique_ptr<output::ProfileFile> profiles_;
   std::unique_ptr<output::SeriesFile> series_;
+  std::unique_ptr<SizeSpectra> size_spectra_;
+  std::unique_ptr<output::RecordFile> spectra_;
+  std::unique_ptr<output::ItemFile> droplets_;
   std::vector<std::vector<double>> values_;
-  double field_time_ = -1, parcel_time_ = -1, profile_time_ = -1;
+  double field_time_ = -1, parcel_time_ = -1, profile_time_ = -1, spectra_time_ = -1,
+         droplet_time_ = -1;
 };
 
 }  // namespace pileus::model

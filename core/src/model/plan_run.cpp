@@ -109,6 +109,13 @@ planner::DataFlow flow_of(const scene::Scene& scene,
         {name, scalar >= 0 ? store.scalars()[static_cast<std::size_t>(scalar)].units : "",
          scalar >= 0 ? origin_of(name, operators) : "parcels"});
   }
+  const parcels::ItemDeclaration items =
+      coupling::plan_quantities(operators, initial_names(scene)).items;
+  const auto add_item = [&](const std::string& name, const std::string& units) {
+    flow.items.push_back({name, units, origin_of(name, operators)});
+  };
+  if (!items.multiplicity.empty()) add_item(items.multiplicity, "1");
+  for (const parcels::ItemColumn& column : items.columns) add_item(column.name, column.units);
   const bool three = dimension == 3;
   flow.transformed = three ? std::vector<std::string>{"x_vorticity", "y_vorticity", "z_vorticity"}
                            : std::vector<std::string>{"vorticity"};

@@ -133,9 +133,10 @@ class Simulation {
   PhaseTimes times_;
 };
 
-/// A simulation of the scene's dimension with the given parcel scalars and physics, still empty.
-/// `physics` must outlive it.
+/// A simulation of the scene's dimension with the given parcel scalars, items and physics, still
+/// empty. `physics` must outlive it.
 std::unique_ptr<Simulation> make_simulation(const scene::Scene& scene,
-                                            std::vector<parcels::Scalar> scalars, Physics& physics);
+                                            std::vector<parcels::Scalar> scalars, Physics& physics,
+                                            parcels::ItemDeclaration items = {});
 
 }  // namespace pileus::model

@@ -87,7 +87,7 @@ double edge_ratio(const mesh::Grid<D>& grid) {
 
 template <int D>
 SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars,
-                              Physics& physics)
+                              Physics& physics, parcels::ItemDeclaration items)
     : grid_(make_grid<D>(scene.domain)),
       scene_(scene),
       step_control_(make_step_control(scene.time)),
@@ -102,7 +102,7 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
       correction_(grid_, {scene.parcels.correction_iterations, scene.parcels.gradient_prefactor,
                           scene.parcels.max_compression}) {
   require_countable(grid_, scene.parcels.per_cell);
-  store_ = std::make_unique<parcels::Store>(D, std::move(scalars));
+  store_ = std::make_unique<parcels::Store>(D, std::move(scalars), std::move(items));
   variance_budget_ = std::make_unique<VarianceBudget>(scene.diagnostics.variance_budgets, *store_,
                                                       grid_.domain_volume());
   mesh_access_.reset(new MeshAccessOf<D>({grid_, *store_, tile_begin_, transport_, wind_}));
@@ -435,11 +435,11 @@ std::size_t SimulationOf<D>::allocated_bytes() const {
 }
 
 std::unique_ptr<Simulation> make_simulation(const scene::Scene& scene,
-                                            std::vector<parcels::Scalar> scalars,
-                                            Physics& physics) {
+                                            std::vector<parcels::Scalar> scalars, Physics& physics,
+                                            parcels::ItemDeclaration items) {
   if (scene.domain.dimension == 2)
-    return std::make_unique<SimulationOf<2>>(scene, std::move(scalars), physics);
-  return std::make_unique<SimulationOf<3>>(scene, std::move(scalars), physics);
+    return std::make_unique<SimulationOf<2>>(scene, std::move(scalars), physics, std::move(items));
+  return std::make_unique<SimulationOf<3>>(scene, std::move(scalars), physics, std::move(items));
 }
 
 template class SimulationOf<2>;

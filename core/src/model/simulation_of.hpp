@@ -12,7 +12,8 @@ namespace pileus::model {
 template <int D>
 class SimulationOf final : public Simulation {
  public:
-  SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars, Physics& physics);
+  SimulationOf(const scene::Scene& scene, std::vector<parcels::Scalar> scalars, Physics& physics,
+               parcels::ItemDeclaration items);
 
   void initialise(const scene::Scene& scene) override;
   void save(output::NamedData& data) const override;

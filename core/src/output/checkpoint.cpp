@@ -67,6 +67,56 @@ Id open_state(const Session& session) {
   return Id(session.check(H5Gopen2(session.file(), "state", H5P_DEFAULT), "open the state"));
 }
 
+/// Counts per parcel, multiplicities and columns; in a group of their own, which a run without
+/// items does not have.
+void write_items(const Session& session, const parcels::ItemLists& items) {
+  const Id group = hdf5::create_group(session, session.file(), "items");
+  hdf5::write_array(session, group, "count", H5T_STD_I32LE, H5T_NATIVE_INT32, items.count(),
+                    items.parcels());
+  hdf5::write_array(session, group, items.declaration().multiplicity, H5T_STD_I64LE,
+                    H5T_NATIVE_INT64, items.multiplicity(), items.size());
+  for (std::size_t c = 0; c < items.declaration().columns.size(); ++c)
+    hdf5::write_array(session, group, items.declaration().columns[c].name, H5T_IEEE_F64LE,
+                      H5T_NATIVE_DOUBLE, items.column(static_cast<int>(c)), items.size());
+}
+
+void read_items(const Session& session, parcels::ItemLists& items, std::size_t parcels) {
+  const parcels::ItemDeclaration& declared = items.declaration();
+  std::set<std::string> wanted = {"count", declared.multiplicity};
+  for (const parcels::ItemColumn& column : declared.columns) wanted.insert(column.name);
+  std::set<std::string> found;
+  const bool any = hdf5::has_object(session.file(), "items");
+  if (!any && !items.exist()) return;
+  Id group;
+  if (any) {
+    group = Id(session.check(H5Gopen2(session.file(), "items", H5P_DEFAULT), "open the items"));
+    for (const std::string& name : hdf5::object_names(session, group)) found.insert(name);
+  }
+  if (found != wanted || !items.exist())
+    throw Error(
+        ExitCode::file,
+        fmt::format("{}: the checkpoint is of another scene: its parcels' items carry [{}], "
+                    "those of the scene [{}].",
+                    session.path().string(), fmt::join(found, ", "),
+                    items.exist() ? fmt::format("{}", fmt::join(wanted, ", ")) : ""));
+  std::vector<std::int32_t> count(parcels);
+  hdf5::read_array_into(session, group, "count", H5T_NATIVE_INT32, count.data(), parcels);
+  std::int64_t total = 0;
+  for (const std::int32_t n : count) {
+    if (n < 0)
+      throw Error(ExitCode::file, fmt::format("{}: a parcel has a negative number of items.",
+                                              session.path().string()));
+    total += n;
+  }
+  items.start(parcels);
+  items.regroup(count, std::vector<std::int64_t>(static_cast<std::size_t>(total), -1));
+  hdf5::read_array_into(session, group, declared.multiplicity, H5T_NATIVE_INT64,
+                        items.multiplicity(), items.size());
+  for (std::size_t c = 0; c < declared.columns.size(); ++c)
+    hdf5::read_array_into(session, group, declared.columns[c].name, H5T_NATIVE_DOUBLE,
+                          items.column(static_cast<int>(c)), items.size());
+}
+
 void require_same_columns(const Session& session, const Header& header, hid_t state,
                           const parcels::Store& store) {
   const std::vector<std::string> names = hdf5::object_names(session, state);
@@ -124,6 +174,7 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& folder,
                         store.column(column), store.size());
     }
   }
+  if (store.items().exist()) write_items(session, store.items());
   write_named_data(session, checkpoint.data);
   session.commit_sealed();
   remove_older(folder, path, std::max(keep, 1));
@@ -143,6 +194,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, parcels::Store& st
     hdf5::read_array_into(session, state, name, H5T_NATIVE_DOUBLE, store.column(column),
                           store.size());
   }
+  read_items(session, store.items(), store.size());
   return {header.time, header.step, header.dt, read_named_data(session)};
 }
 

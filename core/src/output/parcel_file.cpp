@@ -1,164 +1,38 @@
 #include "output/parcel_file.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
-#include "output/xdmf.hpp"
-
 namespace pileus::output {
-
-using hdf5::Id;
-using hdf5::Session;
-
 namespace {
 
-/// Values per chunk: a quarter megabyte of float64, little to rewrite when a record ends inside.
-constexpr hsize_t chunk_values = 32768;
-constexpr const char* group_name = "parcels";
-
-Id open_group(const Session& session) {
-  return Id(session.check(H5Gopen2(session.file(), group_name, H5P_DEFAULT), "open the parcels"));
-}
-
-int column_index(const parcels::Store& store, const std::string& name) {
+const double* column_of(const parcels::Store& store, const std::string& name) {
   for (int column = 0; column < store.column_count(); ++column)
-    if (store.column_name(column) == name) return column;
+    if (store.column_name(column) == name) return store.column(column);
   throw std::invalid_argument("parcels have no column " + name);
-}
-
-std::vector<Variable> position_variables(int dimension) {
-  std::vector<Variable> positions;
-  for (const char* axis : {"x", "y", "z"})
-    if (dimension == 3 || *axis != 'y')
-      positions.push_back({fmt::format("{}_position", axis), "m",
-                           fmt::format("{} coordinate of the parcel's centre", axis)});
-  return positions;
-}
-
-void append_to(const Session& session, hid_t group, const std::string& name, hsize_t first,
-               hsize_t added, hid_t memory_type, const void* data) {
-  const Id dataset = hdf5::open_dataset(session, group, name);
-  const hsize_t start[] = {first}, count[] = {added}, end[] = {first + added};
-  session.check(H5Dset_extent(dataset, end), "extend " + name);
-  if (added > 0 && data != nullptr)
-    hdf5::write_slab(session, dataset, start, count, memory_type, data);
 }
 
 }  // namespace
 
 ParcelFile::ParcelFile(std::filesystem::path path, int dimension, std::vector<Variable> columns,
                        Provenance provenance, Encoding encoding, Start start)
-    : path_(std::move(path)),
-      positions_(position_variables(dimension)),
-      columns_(std::move(columns)),
-      provenance_(std::move(provenance)),
-      encoding_(encoding) {
-  encoding_.compress = false;
-  std::erase_if(columns_, [this](const Variable& column) {
-    return std::any_of(positions_.begin(), positions_.end(),
-                       [&](const Variable& position) { return position.name == column.name; });
-  });
-  refuse_existing(path_, start);
-  if (start.kind == Start::Kind::resume && std::filesystem::exists(path_)) resume(start.time);
-}
-
-std::uint64_t ParcelFile::total() const {
-  return std::accumulate(row_sizes_.begin(), row_sizes_.end(), std::uint64_t{0});
-}
+    : RaggedFile(std::move(path),
+                 {"parcels",
+                  "number of parcels of the record",
+                  {{"uid", "1", "identity of the parcel"}},
+                  position_variables(dimension, "the parcel's centre"),
+                  std::move(columns)},
+                 std::move(provenance), encoding, start) {}
 
 void ParcelFile::append(double time, const parcels::Store& store) {
-  require_later(path_, times_, std::span(&time, 1));
-  Session session = exists_ ? Session::update(path_) : Session::create(path_);
-  if (!exists_) create(session);
-  extend(session, time, store);
-  session.commit();
-  exists_ = true;
-  times_.push_back(time);
-  row_sizes_.push_back(store.size());
-  write_sidecar();
-}
-
-void ParcelFile::create(const Session& session) const {
-  write_provenance(session, session.file(), provenance_);
-  const Id group = hdf5::create_group(session, session.file(), group_name);
-  const Id time = create_time(session, group);
-  const Id obs = create_bare_dimension(session, group, "obs");
-  const Id row_size =
-      create_variable(session, group, {"row_size", "1", "number of parcels of the record"},
-                      H5T_STD_I64LE, {{time}, {0}, {H5S_UNLIMITED}, {512}}, false);
-  hdf5::write_attribute(session, row_size, "sample_dimension", "obs");
-  const VariableShape over_parcels{{obs}, {0}, {H5S_UNLIMITED}, {chunk_values}};
-  create_variable(session, group, {"uid", "1", "identity of the parcel"}, H5T_STD_U64LE,
-                  over_parcels, false);
-  for (const Variable& variable : positions_)
-    create_variable(session, group, variable, encoding_, over_parcels);
-  for (const Variable& variable : columns_)
-    create_variable(session, group, variable, encoding_, over_parcels);
-}
-
-void ParcelFile::extend(const Session& session, double time, const parcels::Store& store) {
-  const Id group = open_group(session);
-  const Id time_axis = hdf5::open_dataset(session, group, "time");
-  if (hdf5::extent_of(session, time_axis) != std::vector<hsize_t>{times_.size()})
-    throw Error(ExitCode::file,
-                fmt::format("{}: another program changed the file while the model was running.",
-                            path_.string()));
-  const hsize_t record = times_.size(), first = total(), added = store.size();
-  append_to(session, group, "time", record, 1, H5T_NATIVE_DOUBLE, &time);
-  append_to(session, group, "row_size", record, 1, H5T_NATIVE_UINT64, &added);
-  append_to(session, group, "obs", first, added, H5T_NATIVE_FLOAT, nullptr);
-  append_to(session, group, "uid", first, added, H5T_NATIVE_UINT64, store.uid());
-  auto write = [&](const Variable& variable) {
-    const double* values = store.column(column_index(store, variable.name));
-    const void* data = encode({values, store.size()}, encoding_, floats_, doubles_);
-    append_to(session, group, variable.name, first, added, encoding_.memory_type(), data);
-  };
-  for (const Variable& variable : positions_) write(variable);
-  for (const Variable& variable : columns_) write(variable);
-}
-
-void ParcelFile::resume(double time) {
-  {
-    Session session = Session::update(path_);
-    const Id group = open_group(session);
-    times_ = hdf5::read_array<double>(session, group, "time");
-    times_.resize(records_until(times_, time));
-    row_sizes_ = hdf5::read_array<std::uint64_t>(session, group, "row_size");
-    row_sizes_.resize(times_.size());
-    auto shorten = [&](const std::string& name, hsize_t length) {
-      if (!hdf5::has_object(group, name))
-        throw Error(ExitCode::file,
-                    fmt::format("{}: the file of the run to resume has no variable {}.",
-                                path_.string(), name));
-      const Id dataset = hdf5::open_dataset(session, group, name);
-      if (hdf5::extent_of(session, dataset).at(0) < length)
-        throw Error(ExitCode::file, fmt::format("{}: variable {} of the run to resume is shorter "
-                                                "than its row sizes say.",
-                                                path_.string(), name));
-      session.check(H5Dset_extent(dataset, &length), "shorten " + name);
-    };
-    for (const char* name : {"time", "row_size"}) shorten(name, times_.size());
-    for (const char* name : {"obs", "uid"}) shorten(name, total());
-    for (const Variable& variable : positions_) shorten(variable.name, total());
-    for (const Variable& variable : columns_) shorten(variable.name, total());
-    session.commit();
-  }
-  exists_ = true;
-  if (!times_.empty()) write_sidecar();
-}
-
-void ParcelFile::write_sidecar() const {
-  std::filesystem::path sidecar = path_;
-  sidecar.replace_extension(".xmf");
-  std::vector<std::string> positions;
-  for (const Variable& position : positions_) positions.push_back(position.name);
-  std::vector<PointRecord> records;
-  for (std::size_t k = 0; k < times_.size(); ++k) records.push_back({times_[k], row_sizes_[k]});
-  write_point_sidecar(sidecar, path_, group_name, positions, columns_, encoding_, records);
+  RaggedRecord record;
+  record.size = store.size();
+  record.wholes = {store.uid()};
+  for (const Variable& variable : content().positions)
+    record.positions.push_back(column_of(store, variable.name));
+  for (const Variable& variable : content().columns)
+    record.columns.push_back(column_of(store, variable.name));
+  RaggedFile::append(time, record);
 }
 
 }  // namespace pileus::output

@@ -86,7 +86,10 @@ void RecordFile::create(const Session& session) const {
     std::vector<Id> axes;
     std::vector<hid_t> scales{time};
     for (const Axis& axis : set.axes) {
-      axes.push_back(create_axis(session, session.file(), axis));
+      const std::string& name = axis.variable.name;
+      axes.push_back(hdf5::has_object(session.file(), name)
+                         ? hdf5::open_dataset(session, session.file(), name)
+                         : create_axis(session, session.file(), axis));
       scales.push_back(axes.back());
     }
     const VariableShape over_axes = shape(set, scales);

@@ -17,7 +17,7 @@ namespace pileus::output {
 
 class RecordFile {
  public:
-  /// The names of the axes of `second` must differ from those of `main`. Nothing is written before
+  /// An axis of `second` of the name of one of `main` is that one. Nothing is written before
   /// the first append, except that `Start::resume_at` removes later records. Throws
   /// Error(ExitCode::file): a file of that name exists (`Start::fresh`), or it does not hold the
   /// same variables (`resume_at`).

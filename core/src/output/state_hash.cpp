@@ -26,6 +26,19 @@ class StateMessage {
   Sha256 hash_;
 };
 
+/// Nothing in a run without items: their state has the digest it always had.
+void add_items(const parcels::ItemLists& items, StateMessage& message) {
+  if (!items.exist()) return;
+  message.text(items.declaration().multiplicity);
+  message.integer(items.size());
+  message.bytes(items.count(), items.parcels() * sizeof(std::int32_t));
+  message.bytes(items.multiplicity(), items.size() * sizeof(std::int64_t));
+  for (std::size_t c = 0; c < items.declaration().columns.size(); ++c) {
+    message.text(items.declaration().columns[c].name);
+    message.bytes(items.column(static_cast<int>(c)), items.size() * sizeof(double));
+  }
+}
+
 }  // namespace
 
 std::string state_sha256(const parcels::Store& store, double time, std::uint64_t step,
@@ -41,6 +54,7 @@ std::string state_sha256(const parcels::Store& store, double time, std::uint64_t
     message.text(store.column_name(column));
     message.bytes(store.column(column), store.size() * sizeof(double));
   }
+  add_items(store.items(), message);
   for (const auto& [name, values] : extra) {
     message.text(name);
     message.integer(values.size());

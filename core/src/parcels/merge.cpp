@@ -46,6 +46,20 @@ double close_moment(double* shape, double volume, bool may_be_larger) {
   return volume;
 }
 
+/// Vertical half-extent of a parcel's ellipse or ellipsoid.
+double vertical_half_extent(const Store& store, std::uint32_t p) {
+  return std::sqrt(store.shape(store.shape_components() - 1)[p]);
+}
+
+/// Turns the heights of a parcel's items from the parcel's measure into metres, or back.
+void restate_heights(Store& store, std::uint32_t p, double scale, double offset) {
+  ItemLists& items = store.items();
+  if (items.height_column() < 0) return;
+  double* height = items.column(items.height_column());
+  const std::int64_t end = items.begin()[p] + items.count()[p];
+  for (std::int64_t i = items.begin()[p]; i < end; ++i) height[i] = scale * height[i] + offset;
+}
+
 /// The largest parcel of a cluster passes its identity on; of equals, the one with the smaller.
 template <class Source>
 std::uint64_t identity_of_merged(const Store& store, const Source* begin, const Source* end) {
@@ -68,7 +82,7 @@ Merge<D>::Merge(const mesh::Grid<D>& grid, double smallest_volume)
 template <int D>
 MergeCounts Merge<D>::run(Store& store, const CellOrder<D>& order) {
   MergeCounts counts;
-  gone_.clear();
+  forget();
   find_links(store, order);
   counts.small = small_.size();
   if (links_.empty()) return counts;
@@ -103,7 +117,16 @@ MergeCounts Merge<D>::run(Store& store, const CellOrder<D>& order) {
     ++counts.clusters[std::min<std::size_t>(members, 7) - 1];
   }
   counts.merged = sources_.size();
+  if (store.items().exist()) list_merged();
   return counts;
+}
+
+template <int D>
+void Merge<D>::list_merged() {
+  for (const Source& s : sources_) merged_.push_back({s.receiver, s.source});
+  std::stable_sort(
+      merged_.begin(), merged_.end(),
+      [](const MergedParcel& a, const MergedParcel& b) { return a.receiver < b.receiver; });
 }
 
 template <int D>
@@ -157,6 +180,11 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   add_moment(r);
   for (const Source* s = begin; s != end; ++s) add_moment(s->source);
   const double size = close_moment<D>(shape, total, store.carries_size());
+  const auto to_metres = [&](std::uint32_t p) {
+    restate_heights(store, p, vertical_half_extent(store, p), store.position(D - 1)[p]);
+  };
+  to_metres(r);
+  for (const Source* s = begin; s != end; ++s) to_metres(s->source);
 
   const auto merge_mean = [&](double* value) {
     double sum = volume[r] * value[r], low = value[r], high = value[r];
@@ -182,6 +210,12 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   store.uid()[r] = identity_of_merged(store, begin, end);
   store.size_volume()[r] = size;
   store.volume()[r] = total;
+  // Items stay at the height where they are.
+  const double inverse_extent = 1.0 / vertical_half_extent(store, r);
+  const double offset = -store.position(D - 1)[r] * inverse_extent;
+  restate_heights(store, r, inverse_extent, offset);
+  for (const Source* s = begin; s != end; ++s)
+    restate_heights(store, s->source, inverse_extent, offset);
 }
 
 template class Merge<2>;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "parcels/cell_order.hpp"
+#include "parcels/item_upkeep.hpp"
 #include "parcels/merge_graph.hpp"
 #include "parcels/nearest.hpp"
 #include "parcels/store.hpp"
@@ -34,7 +35,12 @@ class Merge {
 
   /// One byte per parcel: 1 where the parcel has been merged away; empty when none was.
   const std::vector<std::uint8_t>& gone() const { return gone_; }
-  void forget() { gone_.clear(); }
+  /// Who was merged into whom, by receiver.
+  const std::vector<MergedParcel>& merged() const { return merged_; }
+  void forget() {
+    gone_.clear();
+    merged_.clear();
+  }
 
  private:
   struct Source {
@@ -43,6 +49,7 @@ class Merge {
   };
   void find_links(const Store& store, const CellOrder<D>& order);
   void merge_cluster(Store& store, const Source* begin, const Source* end) const;
+  void list_merged();
 
   mesh::Grid<D> grid_;
   double smallest_volume_;
@@ -53,6 +60,7 @@ class Merge {
   std::vector<Source> sources_;
   std::vector<std::size_t> cluster_begin_;
   std::vector<std::uint8_t> gone_;
+  std::vector<MergedParcel> merged_;
 };
 
 }  // namespace pileus::parcels

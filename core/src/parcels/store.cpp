@@ -15,8 +15,8 @@ constexpr std::size_t read_ahead = 8;
 
 }  // namespace
 
-Store::Store(int dimension, std::vector<Scalar> scalars)
-    : dimension_(dimension), scalars_(std::move(scalars)) {
+Store::Store(int dimension, std::vector<Scalar> scalars, ItemDeclaration items)
+    : dimension_(dimension), scalars_(std::move(scalars)), items_(std::move(items)) {
   std::stable_partition(scalars_.begin(), scalars_.end(),
                         [](const Scalar& s) { return s.nature != Nature::derived; });
   const auto derived = std::count_if(scalars_.begin(), scalars_.end(),
@@ -107,7 +107,7 @@ void Store::gather(const std::vector<std::uint32_t>& source, AlignedArray<double
 }
 
 std::size_t Store::allocated_bytes() const {
-  std::size_t bytes = uid_.allocated_bytes();
+  std::size_t bytes = uid_.allocated_bytes() + items_.allocated_bytes();
   for (const auto& column : columns_) bytes += column.allocated_bytes();
   return bytes;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/aligned_array.hpp"
+#include "parcels/item_lists.hpp"
 
 namespace pileus::parcels {
 
@@ -35,8 +36,8 @@ inline constexpr const char* size_volume_name = "parcel_size_volume";
 
 class Store {
  public:
-  /// An empty store for `dimension` (2 or 3) with the given scalars, in that order.
-  Store(int dimension, std::vector<Scalar> scalars);
+  /// An empty store for `dimension` (2 or 3) with the given scalars, in that order, and items.
+  Store(int dimension, std::vector<Scalar> scalars, ItemDeclaration items = {});
 
   int dimension() const { return dimension_; }
   /// Components of the vorticity: 3 in 3D; in 2D the one component w_x − u_z.
@@ -93,6 +94,10 @@ class Store {
   /// contents are lost, and it may come back as another array of at least its size.
   void gather(const std::vector<std::uint32_t>& source, AlignedArray<double>& spare);
 
+  /// The lists of the parcels' items; whoever changes the number or order of parcels regroups them.
+  ItemLists& items() { return items_; }
+  const ItemLists& items() const { return items_; }
+
   std::size_t allocated_bytes() const;
 
  private:
@@ -105,6 +110,7 @@ class Store {
   int size_volume_column_;
   std::vector<AlignedArray<double>> columns_;
   AlignedArray<std::uint64_t> uid_;
+  ItemLists items_;
   std::size_t capacity_ = 0;  // parcels there is room for
 };
 

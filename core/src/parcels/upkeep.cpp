@@ -39,6 +39,7 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
     const PhaseScope scope(times, Phase::sort);
     list_survivors();
     store.gather(source_, offsets.scratch_array(0));
+    counts.items_united = regroup_items(store, step);
   }
   {
     const PhaseScope scope(times, Phase::split);
@@ -52,6 +53,14 @@ UpkeepCounts Upkeep<D>::run(Store& store, SupportOffsets<D>& offsets, std::uint6
     counts.splits = pairs_.size();
   }
   return counts;
+}
+
+/// Between the new order of the parcels and their splits: halves still have the identity of whom
+/// they are the halves of.
+template <int D>
+std::uint64_t Upkeep<D>::regroup_items(Store& store, std::uint64_t step) {
+  if (!store.items().exist()) return 0;
+  return item_upkeep_.run(store.items(), {source_, merge_.merged(), pairs_, store.uid(), step});
 }
 
 template <int D>
@@ -143,7 +152,8 @@ void Upkeep<D>::list_survivors() {
 template <int D>
 std::size_t Upkeep<D>::allocated_bytes() const {
   return order_.allocated_bytes() + splits_.capacity() + merge_.gone().capacity() +
-         source_.capacity() * sizeof(std::uint32_t) + pairs_.capacity() * sizeof(std::size_t);
+         source_.capacity() * sizeof(std::uint32_t) + pairs_.capacity() * sizeof(std::size_t) +
+         item_upkeep_.allocated_bytes();
 }
 
 template class Upkeep<2>;

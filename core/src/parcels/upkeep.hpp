@@ -6,6 +6,7 @@
 #include "base/phase_timer.hpp"
 #include "parcels/cell_order.hpp"
 #include "parcels/deposit.hpp"
+#include "parcels/item_upkeep.hpp"
 #include "parcels/merge.hpp"
 #include "parcels/split.hpp"
 #include "parcels/store.hpp"
@@ -15,6 +16,7 @@ namespace pileus::parcels {
 struct UpkeepCounts {
   MergeCounts merges;
   std::uint64_t splits = 0;
+  std::uint64_t items_united = 0;  // with another of their parcel, to keep its list short
 };
 
 template <int D>
@@ -39,6 +41,7 @@ class Upkeep {
   void mark_splits(const Store& store, SupportOffsets<D>& scratch);
   void mark_splits_in_flat_cells(const Store& store);
   void list_survivors();
+  std::uint64_t regroup_items(Store& store, std::uint64_t step);
 
   mesh::Grid<D> grid_;
   const Tiling<D>& tiling_;
@@ -50,6 +53,7 @@ class Upkeep {
   std::vector<std::uint32_t> source_;  // old index of every new parcel
   std::vector<std::size_t> pairs_;     // new index of the first of every split pair
   std::vector<std::size_t> tile_begin_;
+  ItemUpkeep item_upkeep_;
 };
 
 }  // namespace pileus::parcels

@@ -76,6 +76,7 @@ struct DataFlow {
     std::string name, units, by;
   };
   std::vector<Stored> stored;          // numbers of a parcel
+  std::vector<Stored> items;           // numbers of each item of the parcels' lists
   std::vector<std::string> deposited;  // fields, per stage
   std::vector<std::string> transformed, recovered;
   int stages = 0;

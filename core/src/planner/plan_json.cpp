@@ -47,6 +47,8 @@ Json flow_json(const DataFlow& flow) {
   json["stored"] = Json(Json::array());
   for (const auto& one : flow.stored)
     json["stored"].push_back({{"name", one.name}, {"units", one.units}, {"by", one.by}});
+  for (const auto& one : flow.items)
+    json["items"].push_back({{"name", one.name}, {"units", one.units}, {"by", one.by}});
   json["deposited"] = flow.deposited;
   json["transformed"] = flow.transformed;
   json["recovered"] = flow.recovered;

@@ -55,6 +55,13 @@ std::string total_time(const DataFlow& flow) {
                      *flow.seconds_per_step * static_cast<double>(*flow.steps), *flow.steps);
 }
 
+/// What each item of the parcels' lists carries, and how much memory that is.
+std::string items_of(const DataFlow& flow) {
+  std::vector<std::string> names;
+  for (const auto& one : flow.items) names.push_back(one.name);
+  return fmt::format("{} ({} B)", names_of(names), 8 * flow.items.size());
+}
+
 std::string saving_of(const DataFlow& flow) {
   const auto parcels = static_cast<double>(flow.parcels);
   return fmt::format("{:.0f} B per parcel, {:.3g} MB; {}", flow.bytes_left_out,
@@ -73,6 +80,7 @@ std::string flow_section(const Plan& plan) {
   };
   std::string text = "\n  data flow\n";
   text += line("stored", names_of(stored));
+  if (!flow.items.empty()) text += line("per item", items_of(flow));
   text += line("deposited",
                names_of(flow.deposited) + fmt::format(", in each of {} stages", flow.stages));
   text += line("transformed", fmt::format("{}; from their spectra: {}", names_of(flow.transformed),

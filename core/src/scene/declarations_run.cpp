@@ -210,6 +210,47 @@ Table stream_table(const char* name, const char* doc, const char* every) {
           .amend_schema = {}};
 }
 
+const Table& spectra_table() {
+  static const Table table = {
+      .path = "output.spectra",
+      .doc = "Size spectra of droplets over the radius of their water, in spectra.nc.",
+      .keys =
+          {value("every", &SpectraControl::every, "s",
+                 "Simulated time between records; 0 s switches the stream off.")
+               .at_least(0),
+           value("smallest", &SpectraControl::smallest, "m", "Lower edge of the first bin.")
+               .above(0),
+           value("largest", &SpectraControl::largest, "m", "Upper edge of the last bin.").above(0),
+           value("bins", &SpectraControl::bins, "1", "Number of bins of equal width in ln r.")
+               .at_least(1)
+               .at_most(10000),
+           value("gridded", &SpectraControl::gridded, "1",
+                 "In every cell of the mesh, besides the mean over the domain.")},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& droplets_table() {
+  static const Table table = {
+      .path = "output.droplets",
+      .doc = "The items of the parcels (droplets) themselves, in droplets.nc.",
+      .keys = {value("every", &DropletOutput::every, "s",
+                     "Simulated time between records; 0 s switches the stream off.")
+                   .at_least(0),
+               value("fraction", &DropletOutput::fraction, "1",
+                     "Share of the items that is written, drawn by chance.")
+                   .above(0)
+                   .at_most(1)},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
 const Table& checkpoint_table() {
   static const Table table = {
       .path = "output.checkpoint",
@@ -331,6 +372,8 @@ const Table& output_table() {
                section("parcels", &OutputControl::parcels, parcels),
                section("profiles", &OutputControl::profiles, profiles),
                section("series", &OutputControl::series, series),
+               section("spectra", &OutputControl::spectra, spectra_table()),
+               section("droplets", &OutputControl::droplets, droplets_table()),
                value("compress", &OutputControl::compress, "1", "Compress the files, losslessly."),
                value("mantissa_bits", &OutputControl::mantissa_bits, "1",
                      "Bits kept of every number written to fields and parcels; 0 keeps all.")

@@ -181,9 +181,25 @@ struct OutputStream {
   std::vector<std::string> variables;  // empty: the stream's default list
 };
 
+/// Size spectra of the droplets, on bins of equal width in ln r.
+struct SpectraControl {
+  double every = 0;                        // s; 0: off
+  double smallest = 1e-7, largest = 5e-3;  // radii at the outermost edges, m
+  int bins = 60;
+  bool gridded = true;  // in every cell besides over the domain
+};
+
+/// The droplets themselves.
+struct DropletOutput {
+  double every = 0;     // s; 0: off
+  double fraction = 1;  // of the items, drawn by chance
+};
+
 struct OutputControl {
   std::string directory;  // default results/<scene>
   OutputStream fields, parcels, profiles, series;
+  SpectraControl spectra;
+  DropletOutput droplets;
   bool compress = true;
   int mantissa_bits = 0;                     // 0: exact
   double checkpoint_every_wall = 600;        // s of wall time

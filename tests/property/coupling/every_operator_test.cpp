@@ -65,6 +65,16 @@ std::vector<Case> every_case() {
   return cases;
 }
 
+/// Makes the items that other operators of this repository work on.
+constexpr const char* maker_of_items = "org.pileus.superdroplets";
+
+bool works_on_items_of_others(const OperatorEntry& entry) {
+  return std::any_of(entry.table->quantities.begin(), entry.table->quantities.end(),
+                     [](const pileus_quantity& row) {
+                       return row.place == PILEUS_ITEM && (row.access & PILEUS_CREATE) == 0;
+                     });
+}
+
 std::vector<OperatorEntry> load(const Case& c) {
   scene::Scene scene;
   scene::OperatorBlock block;
@@ -79,6 +89,14 @@ std::vector<OperatorEntry> load(const Case& c) {
   scene::Problems problems;
   auto entries = load_operators(scene, {{plugins}}, problems);
   EXPECT_TRUE(problems.empty()) << problems.render();
+  if (works_on_items_of_others(entries.front())) {
+    scene.operators.push_back({});
+    scene.operators.back().use = scene.operators.back().name = maker_of_items;
+    // The subject alone is looked at; the maker has cases of its own.
+    scene.operators.back().parameters.emplace_back("condensation",
+                                                   scene::RawValue{"no", false, {}, {}, {}});
+    entries = load_operators(scene, {{plugins}}, problems);
+  }
   return entries;
 }
 
@@ -162,11 +180,13 @@ class EveryOperator : public ::testing::TestWithParam<Case> {
   static Run start(std::uint64_t seed, bool skip_inactive) {
     auto entries = load(GetParam());
     SequenceOptions options;
-    options.initial = read_quantities(entries.front());
+    for (const OperatorEntry& entry : entries)
+      for (const std::string& name : read_quantities(entry)) options.initial.push_back(name);
     options.coupling.skip_inactive = skip_inactive;
     Run run;
     run.sequence = std::make_unique<OperatorSequence>(std::move(entries), std::move(options));
-    run.store = std::make_unique<parcels::Store>(3, run.sequence->required_scalars());
+    run.store = std::make_unique<parcels::Store>(3, run.sequence->required_scalars(),
+                                                 run.sequence->required_items());
     Random random(seed);
     fill(*run.store, random);
     const mesh::Grid<3> grid({4, 4, 4}, {0, 0, 0}, {2000, 2000, 2000});
@@ -202,6 +222,15 @@ class EveryOperator : public ::testing::TestWithParam<Case> {
       ASSERT_NEAR(shape.determinant() / (growth * growth), 1, std::max(rounding, 1e-12))
           << "parcel " << p;
     }
+  }
+
+  static void expect_same_items(const parcels::ItemLists& a, const parcels::ItemLists& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a.multiplicity()[i], b.multiplicity()[i]);
+    for (std::size_t c = 0; c < a.declaration().columns.size(); ++c)
+      ASSERT_EQ(std::memcmp(a.column(static_cast<int>(c)), b.column(static_cast<int>(c)),
+                            a.size() * sizeof(double)),
+                0);
   }
 
   static double draw_step(Random& random) {
@@ -243,6 +272,12 @@ TEST_P(EveryOperator, changes_a_budget_by_its_declared_sources_alone) {
         if (run.store->scalars()[s].budget == budget.budget)
           for (std::size_t p = 0; p < run.store->size(); ++p)
             held += run.store->volume()[p] * std::abs(run.store->scalar(static_cast<int>(s))[p]);
+      const parcels::ItemLists& items = run.store->items();
+      for (std::size_t k = 0; k < items.declaration().columns.size(); ++k)
+        if (items.declaration().columns[k].budget == budget.budget)
+          for (std::size_t i = 0; i < items.size(); ++i)
+            held += static_cast<double>(items.multiplicity()[i]) *
+                    items.column(static_cast<int>(k))[i] / items.budget_scale();
       const double allowed =
           64 * 1.1e-16 * (held + std::abs(budget.source) + std::abs(budget.change));
       EXPECT_LE(std::abs(budget.defect()), allowed) << budget.budget;
@@ -266,6 +301,7 @@ TEST_P(EveryOperator, leaves_inactive_parcels_as_they_are) {
                             skipping.store->size() * sizeof(double)),
                 0)
           << skipping.store->column_name(c);
+    expect_same_items(skipping.store->items(), complete.store->items());
   }
 }
 

@@ -239,7 +239,8 @@ class Substepped : public Operator<Substepped> {
 struct ToyRun {
   ToyRun(std::vector<coupling::OperatorEntry> entries, std::size_t parcels,
          coupling::SequenceOptions options = {}, std::optional<pileus_grid> grid = {})
-      : sequence(std::move(entries), std::move(options)), store(3, sequence.required_scalars()) {
+      : sequence(std::move(entries), std::move(options)),
+        store(3, sequence.required_scalars(), sequence.required_items()) {
     store.resize(parcels);
     for (int c = 0; c < store.column_count(); ++c) std::fill_n(store.column(c), parcels, 0.0);
     for (std::size_t p = 0; p < parcels; ++p) {
