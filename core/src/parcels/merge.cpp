@@ -60,6 +60,29 @@ void restate_heights(Store& store, std::uint32_t p, double scale, double offset)
   for (std::int64_t i = items.begin()[p]; i < end; ++i) height[i] = scale * height[i] + offset;
 }
 
+/// Heights of the items of a cluster's parcels in metres.
+template <class Source>
+void items_to_metres(Store& store, const Source* begin, const Source* end) {
+  const double* z = store.position(store.dimension() - 1);
+  const auto restate = [&](std::uint32_t p) {
+    restate_heights(store, p, vertical_half_extent(store, p), z[p]);
+  };
+  restate(begin->receiver);
+  for (const Source* s = begin; s != end; ++s) restate(s->source);
+}
+
+/// And back, in the measure of the receiver at its new place: items stay at the height where they
+/// are.
+template <class Source>
+void items_to_receiver(Store& store, const Source* begin, const Source* end) {
+  const std::uint32_t r = begin->receiver;
+  const double inverse_extent = 1.0 / vertical_half_extent(store, r);
+  const double offset = -store.position(store.dimension() - 1)[r] * inverse_extent;
+  restate_heights(store, r, inverse_extent, offset);
+  for (const Source* s = begin; s != end; ++s)
+    restate_heights(store, s->source, inverse_extent, offset);
+}
+
 /// The largest parcel of a cluster passes its identity on; of equals, the one with the smaller.
 template <class Source>
 std::uint64_t identity_of_merged(const Store& store, const Source* begin, const Source* end) {
@@ -180,11 +203,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   add_moment(r);
   for (const Source* s = begin; s != end; ++s) add_moment(s->source);
   const double size = close_moment<D>(shape, total, store.carries_size());
-  const auto to_metres = [&](std::uint32_t p) {
-    restate_heights(store, p, vertical_half_extent(store, p), store.position(D - 1)[p]);
-  };
-  to_metres(r);
-  for (const Source* s = begin; s != end; ++s) to_metres(s->source);
+  items_to_metres(store, begin, end);
 
   const auto merge_mean = [&](double* value) {
     double sum = volume[r] * value[r], low = value[r], high = value[r];
@@ -210,12 +229,7 @@ void Merge<D>::merge_cluster(Store& store, const Source* begin, const Source* en
   store.uid()[r] = identity_of_merged(store, begin, end);
   store.size_volume()[r] = size;
   store.volume()[r] = total;
-  // Items stay at the height where they are.
-  const double inverse_extent = 1.0 / vertical_half_extent(store, r);
-  const double offset = -store.position(D - 1)[r] * inverse_extent;
-  restate_heights(store, r, inverse_extent, offset);
-  for (const Source* s = begin; s != end; ++s)
-    restate_heights(store, s->source, inverse_extent, offset);
+  items_to_receiver(store, begin, end);
 }
 
 template class Merge<2>;
