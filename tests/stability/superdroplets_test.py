@@ -87,3 +87,9 @@ class Superdroplets(ProgramTest):
             water = ended.diagnostic("total_droplet_water_mass")
             self.assertEqual(water["relative_change"], 0)
             self.assertGreater(water["initial"], 0)
+
+    def test_a_run_replaces_all_files_of_the_last_one(self):
+        short = BUSY | {"time.end": "10 s"}
+        for _ in range(2):
+            ended = self.run_well(CLOUD, "again", short, ("--threads", "1", "--force"))
+        self.assertTrue((ended.out / "droplets.nc").exists())

@@ -26,7 +26,8 @@ constexpr const char* lock_name = "run.lock";
 /// use.
 bool is_run_file(const std::string& name) {
   constexpr std::array<std::string_view, 3> names = {"summary.json", "status.json", "plan.json"};
-  constexpr std::array<std::string_view, 4> stems = {"fields", "parcels", "profiles", "series"};
+  constexpr std::array<std::string_view, 6> stems = {"fields", "parcels", "profiles",
+                                                     "series", "spectra", "droplets"};
   constexpr std::array<std::string_view, 4> endings = {".nc", ".nc.journal", ".nc.tmp", ".xmf"};
   for (const std::string_view known : names)
     if (name == known || name == std::string(known) + ".tmp") return true;

@@ -2,8 +2,8 @@
 //
 // "Reference" is a solution of 100 to 120 exact bins per mode (LSODA, 1e-9). "Repeated" is
 // the same computed once more by a program of ours with S = e/e_s, 240 bins: S_max to 5e-5 of it,
-// q_l to 1e-5. The two differ by 0.13 % in q_l: the reference lowers the pressure with the density of
-// moist air but the temperature by g/c_p, which does not conserve θ in dry ascent.
+// q_l to 1e-5. The two differ by 0.13 % in q_l: the reference lowers the pressure with the density
+// of moist air but the temperature by g/c_p, which does not conserve θ in dry ascent.
 #include <gtest/gtest.h>
 
 #include <cmath>
