@@ -1,7 +1,5 @@
 // The quantities of superdroplets, as all operators of this library declare them.
 #pragma once
-#include <pileus/declaration.hpp>
-
 namespace pileus::superdroplets {
 
 inline constexpr const char* multiplicity_name = "droplet_multiplicity";
@@ -19,12 +17,5 @@ inline constexpr double heaviest_drop = 1e9;     // kg
 inline constexpr double largest_particle = 1e6;  // m3
 /// Sums of multiplicities stay below 2^63.
 inline constexpr double largest_multiplicity = 1e18;
-
-/// Density of the Boussinesq air: what turns parcel volumes into masses.
-inline Param describe_reference_density(Declaration& d) {
-  return d.number("reference_density", "kg m-3", 1.2)
-      .range(1e-3, 10.0)
-      .doc("of the Boussinesq air; the same for all operators of the droplets");
-}
 
 }  // namespace pileus::superdroplets

@@ -239,9 +239,9 @@ class DropletsOperator : public Operator<DropletsOperator> {
     if (out.buoyancy != nullptr) {
       double condensed = 0;
       if (moves && is_cloudy(block.in(previous_height_)[p], theta, vapour))
-        condensed = std::clamp(
-            condensed_on_the_way(z - block.in(previous_height_)[p], theta, t, pressure, at), -all,
-            vapour);
+        condensed = std::clamp(air_.air.condensed_on_the_way(z - block.in(previous_height_)[p],
+                                                             theta, t, pressure, at),
+                               -all, vapour);
       out.buoyancy[p] = buoyancy_scale_ * (thermo::virtual_potential_temperature(
                                                (t + air_.warming() * condensed) / at.exner,
                                                vapour - condensed, all + condensed) -
@@ -256,22 +256,6 @@ class DropletsOperator : public Operator<DropletsOperator> {
     const Level at = level(height);
     const double t = air_.temperature(theta, at);
     return air_.saturation_ratio(vapour, t, at.pressure).value > nearly_saturated;
-  }
-
-  /// What has condensed since the last call of apply if the excess of vapour has stayed as it was,
-  /// as in steady ascent: the fall of q_s on the way over Γ. Clouds heat the air within a step by
-  /// it and not one step later. Along the dry adiabat d ln q_s/dz = −(dq_s/dT)/q_s·(g/c_p)(θ/θ_v) +
-  /// (−∂ ln q_s/∂ ln p) g/(R_d T_v), with θ_v and T_v of the reference state.
-  double condensed_on_the_way(double rise, double theta, double temperature, double pressure,
-                              const thermo::ReferenceState::Point& at) const {
-    const Saturation s = air_.air.saturation(temperature, pressure);
-    if (!(s.humidity > 0)) return 0;
-    const thermo::Constants& c = air_.air.constants;
-    const double cooling = s.slope / s.humidity * c.gravity / c.heat_capacity * theta / at.theta_v;
-    const double expansion = air_.air.pressure_response(s.pressure, pressure) * c.gravity /
-                             (c.gas_constant_dry_air * at.exner * at.theta_v);
-    const double x = std::clamp(rise * (cooling - expansion), -1.0, 1.0);
-    return s.humidity * x * (1.0 + 0.5 * x) / (1.0 + air_.warming() * s.slope);
   }
 
   /// Number of droplets beyond their critical size: where more water lowers S_eq. Those of pure

@@ -42,7 +42,9 @@ struct Parameters {
     buoyancy = d.choice("buoyancy", {"derived", "carried"})
                    .when(in_moist_air)
                    .doc("from temperature, vapour and loading, or left to the initial state");
-    density = describe_reference_density(d);
+    density = d.number("reference_density", "kg m-3", 1.2)
+                  .range(1e-3, 10.0)
+                  .doc("of the Boussinesq air: turns the volumes of parcels into masses");
     air.describe_constants(d);
     air.describe_real_air(d);
     humidity = d.choice("saturation_humidity", {"specific_humidity", "mixing_ratio"})

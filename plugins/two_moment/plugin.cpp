@@ -68,7 +68,7 @@ class TwoMoment : public Operator<TwoMoment> {
       double condensed = 0;
       if (cloudy && z[p] != previous[p]) {
         condensed =
-            std::clamp(condensed_on_the_way(z[p] - previous[p], theta[p], {t, pressure}, at),
+            std::clamp(air_.condensed_on_the_way(z[p] - previous[p], theta[p], t, pressure, at),
                        -cloud[p], vapour[p]);
       }
       const double liquid =
@@ -150,25 +150,6 @@ class TwoMoment : public Operator<TwoMoment> {
     const double exner = reference_->at(height).exner;
     return {thermo::pressure_of_exner(exner, kappa_), exner,
             air_.prescribed_temperature ? exner * profile_theta(height) : 0.0};
-  }
-
-  struct Air {
-    double temperature, pressure;  // K, Pa
-  };
-  /// What has condensed since the last call of apply if the excess of vapour has stayed as it was,
-  /// as in steady ascent: the fall of q_s on the way over Γ. Clouds heat the air within a step by
-  /// it and not one step later. Along the dry adiabat d ln q_s/dz = −(dq_s/dT)/q_s·(g/c_p)(θ/θ_v) +
-  /// (−∂ ln q_s/∂ ln p) g/(R_d T_v), with θ_v and T_v of the reference state.
-  double condensed_on_the_way(double rise, double theta, const Air& air,
-                              const thermo::ReferenceState::Point& at) const {
-    const Saturation s = air_.saturation(air.temperature, air.pressure);
-    if (air_.prescribed_temperature || !(s.humidity > 0)) return 0;
-    const thermo::Constants& c = air_.constants;
-    const double cooling = s.slope / s.humidity * c.gravity / c.heat_capacity * theta / at.theta_v;
-    const double expansion = air_.pressure_response(s.pressure, air.pressure) * c.gravity /
-                             (c.gas_constant_dry_air * at.exner * at.theta_v);
-    const double x = std::clamp(rise * (cooling - expansion), -1.0, 1.0);
-    return s.humidity * x * (1.0 + 0.5 * x) / (1.0 + air_.warming() * s.slope);
   }
 
   Actions advance(const Columns& c, std::int64_t p, double dt) const {

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 
+#include "reference_state.hpp"
 #include "thermo.hpp"
 
 namespace pileus {
@@ -70,6 +71,23 @@ struct MoistAir {
     const double dry = measure == HumidityMeasure::specific_humidity ? 1.0 - vapour : 1.0;
     const double e = pressure * vapour / (constants.epsilon * dry + vapour);
     return e / thermo::saturation_pressure(temperature, formula).value;
+  }
+
+  /// What has condensed since the last call of apply if the excess of vapour has stayed as it was,
+  /// as in steady ascent by `rise` to air of this temperature and pressure: the fall of q_s on the
+  /// way over Γ. Clouds heat the air within a step by it and not one step later. Along the dry
+  /// adiabat d ln q_s/dz = −(dq_s/dT)/q_s·(g/c_p)(θ/θ_v) + (−∂ ln q_s/∂ ln p) g/(R_d T_v), with θ_v
+  /// and T_v of the reference state.
+  double condensed_on_the_way(double rise, double theta, double temperature, double pressure,
+                              const thermo::ReferenceState::Point& at) const {
+    const Saturation s = saturation(temperature, pressure);
+    if (prescribed_temperature || !(s.humidity > 0)) return 0;
+    const thermo::Constants& c = constants;
+    const double cooling = s.slope / s.humidity * c.gravity / c.heat_capacity * theta / at.theta_v;
+    const double expansion = pressure_response(s.pressure, pressure) * c.gravity /
+                             (c.gas_constant_dry_air * at.exner * at.theta_v);
+    const double x = std::clamp(rise * (cooling - expansion), -1.0, 1.0);
+    return s.humidity * x * (1.0 + 0.5 * x) / (1.0 + warming() * s.slope);
   }
 };
 
