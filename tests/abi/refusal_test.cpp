@@ -26,7 +26,7 @@ constexpr Refusal refusals[] = {
     {"wrong_magic", "its note does not begin with 'PILEUSNOTE0'"},
     {"without_note", "carries no section '.pileus.note'"},
     {"wrong_major", "built for major version 7 of the plugin interface, this program has 0"},
-    {"newer_minor", "needs plugin interface 0.3, this program has 0.2"},
+    {"newer_minor", "needs plugin interface 0.4, this program has 0.3"},
     {"fast_math", "rebuild it without -ffast-math"},
     {"missing_entry", "does not export the entry function 'pileus_module_v0'"},
     {"extra_symbol", "exports more than the entry function: forgotten_helper"},

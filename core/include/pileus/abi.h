@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 #define PILEUS_ABI_MAJOR 0u /* also in the entry symbol's name: a new major is a new symbol */
-#define PILEUS_ABI_MINOR 2u /* raised when a table grows */
+#define PILEUS_ABI_MINOR 3u /* raised when a table grows */
 #define PILEUS_ENTRY_SYMBOL "pileus_module_v0"
 #define PILEUS_EXPORT __attribute__((visibility("default")))
 /* Does table P, filled in by the other side, reach as far as MEMBER? A member that is not reached
@@ -57,8 +57,8 @@ enum { /* place: where a quantity lives */
                              * quantity of the gridded flow; one element per node, see
                              * pileus.mesh/1; read only, not in diagnose */
   PILEUS_MESH_AT_PARCEL,    /* the same, interpolated back to the parcels */
-  PILEUS_SURFACE,
-  PILEUS_DOMAIN
+  PILEUS_SURFACE,           /* one element per column of cells: x + cells[0] * y */
+  PILEUS_DOMAIN             /* one number of the whole run; see below */
 };
 enum { PILEUS_F64 = 1, PILEUS_F32, PILEUS_I64, PILEUS_U64 }; /* type */
 enum { /* access, a bit set */
@@ -101,7 +101,10 @@ enum { /* flags, a bit set */
 };
 enum { /* parameter type */
   PILEUS_NUMBER = 1, PILEUS_INTEGER, PILEUS_SWITCH, PILEUS_CHOICE, PILEUS_TEXT,
-  PILEUS_NUMBERS            /* a list of numbers of one unit; a single number is a list of one */
+  PILEUS_NUMBERS,           /* a list of numbers of one unit; a single number is a list of one */
+  PILEUS_PROFILE,           /* piecewise linear over height: the list is z0, v0, z1, v1 ... (z in m,
+                             * ascending), constant beyond its ends; a single number: everywhere */
+  PILEUS_SERIES             /* the same over time, s */
 };
 enum { PILEUS_PROVIDES = 1, PILEUS_REQUIRES, PILEUS_EXCLUDES };     /* role of an effect */
 enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* comparison */
@@ -127,6 +130,13 @@ enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* compariso
  * same relative height), mergers (lists are joined, items stay at their height, and lists that have
  * become too long are shortened by uniting items alike, with sums kept) and restarts. An activity
  * condition on a quantity of the items holds for a parcel if it holds for one of its items. */
+/* The surface. Its quantities have no nature. Operators of global scope ADD to a shared one, or
+ * CREATE one of their own, which they read and WRITE; it starts at `initial` or at what the scene's
+ * initial state says under its name, as a function of x and y.
+ *
+ * The domain. "domain_mean_x_velocity" and "domain_mean_y_velocity" (m s-1) are the horizontal
+ * momentum that the vorticity of the parcels does not hold; operators of global scope may WRITE
+ * them. "coriolis_parameter" (s-1) is read only. In two dimensions there is only the first. */
 typedef struct pileus_quantity { /* its position in `quantities` is its slot number */
   uint32_t size, place, type, components, access, nature, on_merge, on_split;
   const char* name;   /* CF standard name, or one registered in schemas/quantities.yaml */
@@ -142,8 +152,8 @@ typedef struct pileus_quantity { /* its position in `quantities` is its slot num
 typedef struct pileus_parameter {      /* its position is its index in pileus_values */
   uint32_t size, type, knob, reserved; /* knob: 1 if it trades accuracy for time */
   const char *name, *units, *doc;
-  double fallback;            /* the default; of NUMBERS: a list of this one number */
-  double low, high;           /* both ends included; low == high: unbounded */
+  double fallback;  /* the default; of NUMBERS: a list of this one; of a PROFILE: everywhere */
+  double low, high; /* both ends included; low == high: unbounded */
   const char* const* choices; /* CHOICE: zero-terminated; the first is the default */
   const double* ladder;       /* knob values, coarse to fine, NaN-terminated; or NULL */
   const char* when;           /* the parameter means something only then */

@@ -104,6 +104,20 @@ class Declaration {
     return touches(name, units, PILEUS_ADD).place(PILEUS_SURFACE);
   }
 
+  /// One of the ground of its own: read and given new values in `apply`, starting at initial() or
+  /// at what the scene says. Only global operators may.
+  Quantity owns_on_surface(const char* name, const char* units) {
+    return owns(name, units).place(PILEUS_SURFACE);
+  }
+  /// A number of the whole run: element 0 of its view. pileus/abi.h lists them.
+  Quantity reads_domain(const char* name, const char* units) {
+    return reads(name, units).place(PILEUS_DOMAIN);
+  }
+  /// The same to be changed. Only global operators may.
+  Quantity updates_domain(const char* name, const char* units) {
+    return updates(name, units).place(PILEUS_DOMAIN);
+  }
+
   /// A quantity on the nodes of the mesh: the parcels' quantity of that name as the core gathers
   /// it, or one of the gridded flow (strain_rate_magnitude, x_derivative_of_z_velocity, …), of the
   /// state at the start of `apply`.
@@ -158,6 +172,15 @@ class Declaration {
   /// A list of numbers of one unit; the default is a list of one.
   Parameter numbers(const char* name, const char* units, double fallback) {
     return parameter(PILEUS_NUMBERS, name, units, fallback);
+  }
+
+  /// A function of height, linear between its points; the default holds everywhere.
+  Parameter profile(const char* name, const char* units, double fallback) {
+    return parameter(PILEUS_PROFILE, name, units, fallback);
+  }
+  /// A function of time.
+  Parameter series(const char* name, const char* units, double fallback) {
+    return parameter(PILEUS_SERIES, name, units, fallback);
   }
 
   void provides(const char* effect, const char* when = nullptr) {

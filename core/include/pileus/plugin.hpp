@@ -28,6 +28,7 @@
 #include "abi.h"
 #include "declaration.hpp"
 #include "philox.hpp"
+#include "piecewise_linear.hpp"
 
 namespace pileus {
 
@@ -198,6 +199,8 @@ class Operator {
   int choice(Param p) const { return static_cast<int>(number_[p.index]); }
   const std::string& text(Param p) const { return text_[p.index]; }
   std::span<const double> list(Param p) const { return list_[p.index]; }
+  /// A parameter over height or time.
+  PiecewiseLinear profile(Param p) const { return PiecewiseLinear(list_[p.index]); }
 
   /// Calls body(i) for i = 0 … n−1 on all threads; for operators of global scope, in `apply`, and
   /// for all in `init`. The result for i must not depend on other calls.

@@ -67,8 +67,10 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Der
   for (std::size_t s = 0; s < views.size(); ++s) {
     const BoundSlot& slot = bound.slots[s];
     if (slot.surface >= 0) {
-      const bool adds = slot.writable && !diagnosing;
-      views[s].access = adds ? PILEUS_READ | PILEUS_ADD : std::uint32_t{PILEUS_READ};
+      const bool changes = slot.writable && !diagnosing;
+      const bool owned = (bound.entry->table->quantities[s].access & PILEUS_WRITE) != 0;
+      views[s].access = PILEUS_READ;
+      if (changes) views[s].access |= owned ? PILEUS_WRITE : PILEUS_ADD;
       views[s].data = surface_.values(static_cast<std::size_t>(slot.surface)).data();
       views[s].count = static_cast<std::int64_t>(surface_.columns());
       continue;
@@ -77,6 +79,11 @@ pileus_block BlockRunner::block(std::size_t which, const ParcelRange& range, Der
     const bool writable = slot.writable && slot.derived == diagnosing;
     views[s].access = writable ? PILEUS_READ | PILEUS_WRITE : std::uint32_t{PILEUS_READ};
     if (slot.item >= 0) continue;
+    if (slot.domain != nullptr) {
+      views[s].data = slot.domain;
+      views[s].count = 1;
+      continue;
+    }
     views[s].data = column >= 0 ? store_.column(column) + range.begin : nullptr;
     views[s].count = static_cast<std::int64_t>(range.count);
     if (slot.mesh.exists()) mesh_->show(slot.mesh, range.begin, range.count, views[s]);
@@ -129,6 +136,16 @@ bool BlockRunner::writes_violate(const Attempt& a, std::span<const std::uint32_t
     if (violates(surface_.values(static_cast<std::size_t>(slot.surface)).data(), surface_.columns(),
                  {}, slot, s, nullptr, result))
       return true;
+  }
+  for (const std::size_t s : a.bound.written_domain) {
+    const BoundSlot& slot = a.bound.slots[s];
+    if (*slot.domain >= slot.low && *slot.domain <= slot.high) continue;
+    result.status = PILEUS_E_NUMERIC;
+    result.error.slot = static_cast<std::int32_t>(s);
+    result.error.value = *slot.domain;
+    std::snprintf(result.error.text, sizeof result.error.text,
+                  "it wrote %.17g, allowed is [%.6g, %.6g]", *slot.domain, slot.low, slot.high);
+    return true;
   }
   const std::vector<std::string>& budgets = a.bound.entry->table->budgets;
   for (std::size_t b = 0; b < budgets.size(); ++b) {
@@ -290,6 +307,8 @@ void BlockRunner::snapshot(const Attempt& a) const {
     std::copy_n(surface_.values(static_cast<std::size_t>(field)).data(), surface_.columns(),
                 a.work.surface_snapshot.data() + k * surface_.columns());
   }
+  for (std::size_t k = 0; k < a.bound.written_domain.size(); ++k)
+    a.work.domain_snapshot[k] = *a.bound.slots[a.bound.written_domain[k]].domain;
   if (!a.bound.kept_items.empty()) snapshot_items(a);
 }
 
@@ -303,12 +322,14 @@ void BlockRunner::restore(const Attempt& a, std::span<const std::uint32_t> list)
       for (const std::uint32_t i : list) now[i] = before[i];
     }
   }
-  // Only calls with all parcels add to the surface, so that it goes back as a whole.
+  // Only calls with all parcels change the surface and the domain, so that it goes back as a whole.
   for (std::size_t k = 0; k < a.bound.accumulated.size(); ++k) {
     const int field = a.bound.slots[a.bound.accumulated[k]].surface;
     std::copy_n(a.work.surface_snapshot.data() + k * surface_.columns(), surface_.columns(),
                 surface_.values(static_cast<std::size_t>(field)).data());
   }
+  for (std::size_t k = 0; k < a.bound.written_domain.size(); ++k)
+    *a.bound.slots[a.bound.written_domain[k]].domain = a.work.domain_snapshot[k];
   if (!a.bound.kept_items.empty()) restore_items(a, list);
 }
 

@@ -21,6 +21,14 @@ void bind_surface_slot(BoundOperator& bound, std::size_t number, const parcels::
   if (slot.writable) bound.accumulated.push_back(number);
 }
 
+/// Binds a number of the domain; in the plane there is less of them.
+void bind_domain_slot(BoundOperator& bound, std::size_t number, const BoundMesh& mesh,
+                      BoundSlot& slot) {
+  if (mesh.quantities == nullptr) return;
+  slot.domain = mesh.quantities->access().domain_value(bound.entry->table->quantities[number].name);
+  if (slot.domain != nullptr && slot.writable) bound.written_domain.push_back(number);
+}
+
 [[noreturn]] void refuse_missing(const BoundOperator& bound, const pileus_quantity& row,
                                  const char* where) {
   throw Error(ExitCode::usage, fmt::format("operator '{}' needs '{}', which {} not have",
@@ -108,6 +116,8 @@ void bind_slots(BoundOperator& bound, const parcels::Store& store, const Surface
     const bool exists = bound.entry->exists(i);
     if (exists && row.place == PILEUS_SURFACE) {
       bind_surface_slot(bound, i, store, surface, slot);
+    } else if (exists && row.place == PILEUS_DOMAIN) {
+      bind_domain_slot(bound, i, mesh, slot);
     } else if (exists && row.place == PILEUS_ITEM) {
       if (item_quantities(store) > 0) bind_item_slot(bound, i, store, surface, slot);
     } else if (exists && row.place != PILEUS_PARCEL) {

@@ -17,11 +17,12 @@ namespace pileus::coupling {
 /// A declared quantity and the column of the store, the surface field or the place on the mesh it
 /// stands for.
 struct BoundSlot {
-  int column = -1;       // −1: no quantity of the parcels, or it does not exist in this run
-  int surface = -1;      // position among the surface fields; −1: none of them
-  int item = -1;         // of items: 0 the multiplicity, c + 1 column c; −1: none of them
-  MeshSlot mesh;         // of places on the mesh
-  bool derived = false;  // written by diagnose; every other writable slot by apply
+  int column = -1;           // −1: no quantity of the parcels, or it does not exist in this run
+  int surface = -1;          // position among the surface fields; −1: none of them
+  int item = -1;             // of items: 0 the multiplicity, c + 1 column c; −1: none of them
+  MeshSlot mesh;             // of places on the mesh
+  double* domain = nullptr;  // the number of the domain, where it is one
+  bool derived = false;      // written by diagnose; every other writable slot by apply
   bool writable = false;
   bool withheld = false;   // exists, but its effect waits to be switched on
   bool on_demand = false;  // derived, and nobody reads it within a step
@@ -57,13 +58,14 @@ struct BoundOperator {
   const OperatorEntry* entry = nullptr;
   std::unique_ptr<host::Instance> instance;
   std::uint32_t stream = 0;
-  std::vector<BoundSlot> slots;            // by slot number
-  std::vector<std::size_t> written;        // slots that apply writes
-  std::vector<std::size_t> derived;        // slots that diagnose writes
-  std::vector<std::size_t> accumulated;    // slots of the surface that apply adds to
-  std::vector<std::size_t> written_items;  // slots of items that apply writes
-  std::vector<int> kept_items;             // what of items has to be put back after a rejection
-  std::vector<BoundCondition> conditions;  // sorted by clause; empty: always active
+  std::vector<BoundSlot> slots;             // by slot number
+  std::vector<std::size_t> written;         // slots that apply writes
+  std::vector<std::size_t> derived;         // slots that diagnose writes
+  std::vector<std::size_t> accumulated;     // slots of the surface that apply changes
+  std::vector<std::size_t> written_domain;  // slots of the domain that apply writes
+  std::vector<std::size_t> written_items;   // slots of items that apply writes
+  std::vector<int> kept_items;              // what of items has to be put back after a rejection
+  std::vector<BoundCondition> conditions;   // sorted by clause; empty: always active
   std::vector<BudgetedSlot> budgeted;
   std::vector<BudgetedItems> budgeted_items;
   /// Whose change makes diagnose or the conditions stale: columns of the store, and the surface

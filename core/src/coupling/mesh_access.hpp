@@ -1,10 +1,16 @@
 // The mesh as operators use it; implemented where the dimension of the parcels is known.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string_view>
 
 namespace pileus::coupling {
+
+/// Numbers of the whole domain that operators may ask for.
+inline constexpr std::array<std::string_view, 2> mean_wind_names = {"domain_mean_x_velocity",
+                                                                    "domain_mean_y_velocity"};
+inline constexpr std::string_view coriolis_parameter_name = "coriolis_parameter";
 
 /// Fields are records of record_width() doubles per node in the order of mesh/grid.hpp. All methods
 /// are for the present state of the store, run their own parallel loops, and give the same bits for
@@ -31,6 +37,10 @@ class MeshAccess {
   virtual int find_flow_quantity(std::string_view name) const = 0;
   /// Copies a quantity of the flow last solved for into one lane of the records.
   virtual void copy_flow_quantity(int which, double* field, int lane) const = 0;
+
+  /// Where a number of the whole domain is kept (pileus/abi.h lists them), or null where this run
+  /// has none of that name.
+  virtual double* domain_value(std::string_view name) = 0;
 
   /// Wraps positions sideways and reflects them at the walls, after an operator moved parcels.
   virtual void confine() = 0;

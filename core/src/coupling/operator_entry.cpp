@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
 #include "coupling/parameters.hpp"
@@ -70,6 +72,16 @@ bool OperatorEntry::is_dormant() const {
     any = any || effects[i] == EffectState::watched;
   }
   return any;
+}
+
+bool writes_at_the_ground(const std::vector<OperatorEntry>& operators, std::string_view quantity) {
+  return std::any_of(operators.begin(), operators.end(), [&](const OperatorEntry& entry) {
+    const host::OperatorTable& table = *entry.table;
+    const int row = table.find_quantity(quantity);
+    if (row < 0 || table.op.kind != std::string_view("surface")) return false;
+    const auto slot = static_cast<std::size_t>(row);
+    return entry.exists(slot) && (table.quantities[slot].access & PILEUS_WRITE) != 0;
+  });
 }
 
 std::vector<OperatorEntry> load_operators(const scene::Scene& scene, const host::SearchPath& search,

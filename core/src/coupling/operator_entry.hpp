@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/operator_table.hpp"
@@ -41,6 +42,9 @@ struct OperatorEntry {
   /// Whether all effects it provides wait to be switched on, so that it is not called.
   bool is_dormant() const;
 };
+
+/// Whether one of the kind "surface" may change a quantity of the parcels.
+bool writes_at_the_ground(const std::vector<OperatorEntry>& operators, std::string_view quantity);
 
 /// Loads every operator of the scene. Mistakes in the scene go to `problems`, all of them; an
 /// operator with a mistake in its parameters is still returned.

@@ -460,6 +460,9 @@ void OperatorSequence::close_books(std::size_t which, std::size_t blocks) {
     const int field = version_of_surface(*store_, bound.slots[s].surface);
     versions_[static_cast<std::size_t>(field)] = next_version_;
   }
+  // The flow is solved for from the vorticity and the mean wind.
+  if (!bound.written_domain.empty())
+    versions_[static_cast<std::size_t>(store_->dimension()) + 1] = next_version_;
   for (const int item : bound.kept_items)
     versions_[static_cast<std::size_t>(version_of_item(*store_, surface_, item))] = next_version_;
   ++next_version_;

@@ -21,6 +21,10 @@ scene::ParameterType type_of(std::uint32_t type) {
       return scene::ParameterType::text;
     case PILEUS_NUMBERS:
       return scene::ParameterType::numbers;
+    case PILEUS_PROFILE:
+      return scene::ParameterType::profile;
+    case PILEUS_SERIES:
+      return scene::ParameterType::series;
     default:
       return scene::ParameterType::number;
   }
@@ -69,6 +73,8 @@ host::ParameterValues read_parameters(const scene::OperatorBlock& block,
         values.set_text(index, read.text[i]);
         break;
       case PILEUS_NUMBERS:
+      case PILEUS_PROFILE:
+      case PILEUS_SERIES:
         values.set_list(index, read.list[i]);
         break;
       default:

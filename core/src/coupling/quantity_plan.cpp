@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/quantities.hpp"
+#include "coupling/mesh_access.hpp"
 #include "mesh/flow_quantities.hpp"
 
 namespace pileus::coupling {
@@ -51,7 +52,7 @@ class Planner {
     }
     for (const std::string& name : claims_.names) plan.scalars.push_back(unite(name));
     for (const std::string& name : initial_) {
-      if (!claims_.know(name) && name != buoyancy_name) {
+      if (!claims_.know(name) && name != buoyancy_name && !owned_on_surface(name)) {
         plan.scalars.push_back(passive(name));
       }
     }
@@ -79,6 +80,7 @@ class Planner {
           if (is_core_quantity(row.name)) continue;
         }
         check_units(entry, row);
+        if (row.place == PILEUS_DOMAIN) continue;
         if (row.place == PILEUS_SURFACE) {
           surface_claims_.add({&entry, &row});
         } else if (row.place == PILEUS_ITEM) {
@@ -110,6 +112,7 @@ class Planner {
     };
     if (row.place == PILEUS_SURFACE) return check_surface_support(entry, row);
     if (row.place == PILEUS_ITEM) return true;  // the plugin's table has been checked
+    if (row.place == PILEUS_DOMAIN) return check_domain_support(entry, row);
     const bool on_mesh = row.place == PILEUS_MESH || row.place == PILEUS_MESH_AT_PARCEL;
     if (row.place != PILEUS_PARCEL && !on_mesh) {
       return refuse("elsewhere than on the parcels, the surface or the mesh");
@@ -139,13 +142,34 @@ class Planner {
     if (row.type != PILEUS_F64 || row.components != 1) {
       return refuse("as something other than one double-precision number per column of cells");
     }
-    if ((row.access & PILEUS_WRITE) != 0) return refuse("to overwrite it; it can be added to");
+    if ((row.access & PILEUS_WRITE) != 0 && (row.access & PILEUS_CREATE) == 0)
+      return refuse("to overwrite it; only its owner does, others add to it");
     const bool adds = (row.access & (PILEUS_ADD | PILEUS_CREATE)) != 0;
     if (adds && entry.table->op.scope != PILEUS_GLOBAL) {
       return refuse(
-          "to add to it from blocks that run side by side, in no fixed order; its scope has to be "
+          "to change it from blocks that run side by side, in no fixed order; its scope has to be "
           "global");
     }
+    return true;
+  }
+
+  bool check_domain_support(const OperatorEntry& entry, const pileus_quantity& row) {
+    const auto refuse = [&](const std::string& why) {
+      complain(
+          fmt::format("operator '{}' declares '{}' of the domain {}", entry.name, row.name, why));
+      return false;
+    };
+    const std::string_view name = row.name;
+    const bool wind = name == mean_wind_names[0] || name == mean_wind_names[1];
+    if (!wind && name != coriolis_parameter_name)
+      return refuse(fmt::format("; there are {}, {} and {}", mean_wind_names[0], mean_wind_names[1],
+                                coriolis_parameter_name));
+    if (row.type != PILEUS_F64 || row.components != 1)
+      return refuse("as something other than one double-precision number");
+    if ((row.access & PILEUS_WRITE) == 0) return true;
+    if (!wind) return refuse("to overwrite it; it is the scene's");
+    if (entry.table->op.scope != PILEUS_GLOBAL)
+      return refuse("to change it from blocks that run side by side; its scope has to be global");
     return true;
   }
 
@@ -196,9 +220,17 @@ class Planner {
     return owner;
   }
 
+  /// What the initial state may set of the ground.
+  bool owned_on_surface(const std::string& name) const {
+    if (!surface_claims_.know(name)) return false;
+    const std::vector<Claim>& claims = surface_claims_.of.at(name);
+    return std::any_of(claims.begin(), claims.end(), [](const Claim& c) { return c.creates(); });
+  }
+
   SurfaceQuantity unite_on_surface(const std::string& name) {
     const std::vector<Claim>& claims = surface_claims_.of.at(name);
-    if (is_core_quantity(name) || claims_.know(name) || initial_.count(name) > 0) {
+    if (is_core_quantity(name) || claims_.know(name) ||
+        (initial_.count(name) > 0 && !owned_on_surface(name))) {
       complain(fmt::format("operator '{}' declares '{}' on the surface, but parcels carry it",
                            claims.front().by->name, name));
     }

@@ -21,7 +21,12 @@ int SurfaceFields::find(std::string_view name) const {
 
 void SurfaceFields::start(std::size_t columns) {
   columns_ = columns;
-  for (std::size_t i = 0; i < list_.size(); ++i) values_[i].assign(columns, list_[i].initial);
+  for (std::size_t i = 0; i < list_.size(); ++i) {
+    if (given_[i].size() == columns)
+      values_[i] = given_[i];
+    else
+      values_[i].assign(columns, list_[i].initial);
+  }
 }
 
 std::map<std::string, std::vector<double>> SurfaceFields::named_values() const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pileus::coupling {
@@ -20,7 +21,7 @@ class SurfaceFields {
  public:
   SurfaceFields() = default;
   explicit SurfaceFields(std::vector<SurfaceQuantity> list)
-      : list_(std::move(list)), values_(list_.size()) {}
+      : list_(std::move(list)), values_(list_.size()), given_(list_.size()) {}
 
   const std::vector<SurfaceQuantity>& list() const { return list_; }
   bool empty() const { return list_.empty(); }
@@ -30,6 +31,10 @@ class SurfaceFields {
 
   /// Makes room for `columns` values per quantity and gives them their initial values.
   void start(std::size_t columns);
+  /// The initial values of one quantity, column by column, for every start from now on.
+  void begin_with(std::size_t field, std::vector<double> values) {
+    given_[field] = std::move(values);
+  }
 
   std::vector<double>& values(std::size_t field) { return values_[field]; }
   const std::vector<double>& values(std::size_t field) const { return values_[field]; }
@@ -42,6 +47,7 @@ class SurfaceFields {
  private:
   std::vector<SurfaceQuantity> list_;
   std::vector<std::vector<double>> values_;
+  std::vector<std::vector<double>> given_;  // what values start with; empty: the declared value
   std::size_t columns_ = 0;
 };
 

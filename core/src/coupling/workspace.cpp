@@ -31,6 +31,10 @@ void Workspace::reserve(const std::vector<BoundOperator>& operators, std::size_t
     }
     ledger.assign(budgets, 0.0);
     attempt.assign(budgets, 0.0);
+    std::size_t numbers = 0;
+    for (const BoundOperator& bound : operators)
+      numbers = std::max(numbers, bound.written_domain.size());
+    domain_snapshot.assign(numbers, 0.0);
   }
   if (parcels <= everyone.size()) return;
   std::size_t columns = 0;

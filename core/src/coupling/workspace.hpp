@@ -66,6 +66,7 @@ struct alignas(cache_line_bytes) Workspace {
   AlignedArray<double> snapshot;                // of the written columns, one after another
   std::size_t snapshot_stride = 0;              // parcels per column in it
   AlignedArray<double> surface_snapshot;        // of the surface fields added to
+  std::vector<double> domain_snapshot;          // of the numbers of the domain written
   ItemSnapshot item_snapshot;                   // of the items' quantities written
   std::vector<std::int64_t> item_begin;         // per parcel of the block, from its first item on
   std::vector<std::uint32_t> active, everyone, skipped;  // index lists of up to a block

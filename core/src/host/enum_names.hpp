@@ -31,8 +31,8 @@ inline constexpr std::array<const char*, 4> scope_list = {"local", "cellwise", "
 inline constexpr std::array<const char*, 4> form_list = {"flow", "projection", "closure",
                                                          "observer"};
 inline constexpr std::array<const char*, 4> repeat_list = {"none", "run", "threads", "ranks"};
-inline constexpr std::array<const char*, 6> parameter_list = {"number", "integer", "switch",
-                                                              "choice", "text",    "numbers"};
+inline constexpr std::array<const char*, 8> parameter_list = {
+    "number", "integer", "switch", "choice", "text", "numbers", "profile", "series"};
 inline constexpr std::array<const char*, 3> role_list = {"provides", "requires", "excludes"};
 inline constexpr std::array<const char*, 5> comparison_list = {"<", "<=", ">", ">=", "!="};
 

@@ -63,9 +63,18 @@ void check_surface(const pileus_quantity& q, const std::string& place, Complaint
             "has its initial value outside its range");
 }
 
+/// The run's own numbers: nobody creates them.
+void check_domain(const pileus_quantity& q, const std::string& place, Complaints& c) {
+  c.require(q.nature == 0 && q.budget == nullptr, place,
+            "is a number of the domain, so it has no nature and belongs to no budget");
+  c.require((q.access & (PILEUS_CREATE | PILEUS_ADD)) == 0, place,
+            "is a number of the domain, which operators read or write");
+}
+
 void check_nature(const pileus_quantity& q, const std::string& place, Complaints& c) {
   const bool creates = (q.access & PILEUS_CREATE) != 0;
   if (q.place == PILEUS_SURFACE) return check_surface(q, place, c);
+  if (q.place == PILEUS_DOMAIN) return check_domain(q, place, c);
   if (q.nature == PILEUS_DERIVED) {
     c.require(creates, place, "is derived but not owned: add PILEUS_CREATE, or leave its nature 0");
   } else if (creates) {

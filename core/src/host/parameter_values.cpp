@@ -4,6 +4,24 @@
 
 namespace pileus::host {
 
+namespace {
+
+bool is_function(std::uint32_t type) {
+  return type == PILEUS_PROFILE || type == PILEUS_SERIES;
+}
+bool is_list(std::uint32_t type) {
+  return type == PILEUS_NUMBERS || is_function(type);
+}
+
+/// A function of one point is constant, wherever that point is.
+std::vector<double> default_list(const pileus_parameter& p) {
+  if (is_function(p.type)) return {0.0, p.fallback};
+  if (is_list(p.type)) return {p.fallback};
+  return {};
+}
+
+}  // namespace
+
 ParameterValues::ParameterValues(const OperatorTable& table) {
   for (const pileus_parameter& p : table.parameters) {
     number_.push_back(p.type == PILEUS_CHOICE || p.type == PILEUS_TEXT ? 0.0 : p.fallback);
@@ -11,8 +29,9 @@ ParameterValues::ParameterValues(const OperatorTable& table) {
     text_.emplace_back(p.type == PILEUS_CHOICE                               ? p.choices[0]
                        : p.type == PILEUS_TEXT && p.text_fallback != nullptr ? p.text_fallback
                                                                              : "");
-    has_list_.push_back(p.type == PILEUS_NUMBERS);
-    list_.emplace_back(p.type == PILEUS_NUMBERS ? 1 : 0, p.fallback);
+    has_list_.push_back(is_list(p.type));
+    is_function_.push_back(is_function(p.type));
+    list_.push_back(default_list(p));
   }
 }
 
@@ -26,7 +45,9 @@ void ParameterValues::set_text(int index, std::string value) {
 }
 
 void ParameterValues::set_list(int index, std::vector<double> values) {
-  number_[at(index)] = values.empty() ? 0.0 : values.front();
+  // Of a function its first value; the list begins with the place of that.
+  const std::size_t first = is_function_[at(index)] ? 1 : 0;
+  number_[at(index)] = values.size() <= first ? 0.0 : values[first];
   list_[at(index)] = std::move(values);
 }
 

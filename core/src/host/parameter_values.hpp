@@ -31,7 +31,7 @@ class ParameterValues {
 
   std::vector<double> number_;
   std::vector<std::string> text_;
-  std::vector<bool> has_text_, has_list_;
+  std::vector<bool> has_text_, has_list_, is_function_;
   std::vector<std::vector<double>> list_;
   std::vector<const char*> text_view_;
   std::vector<const double*> list_view_;

@@ -132,6 +132,25 @@ void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, pa
   }
 }
 
+void give_initial_surface(const scene::Scene& scene, const pileus_grid& grid,
+                          coupling::SurfaceFields& surface) {
+  std::vector<double> x, y;
+  for (std::int64_t j = 0; j < grid.cells[1]; ++j)
+    for (std::int64_t i = 0; i < grid.cells[0]; ++i) {
+      x.push_back(grid.origin[0] + (static_cast<double>(i) + 0.5) * grid.spacing[0]);
+      y.push_back(grid.origin[1] + (static_cast<double>(j) + 0.5) * grid.spacing[1]);
+    }
+  const std::vector<double> z(x.size(), grid.origin[2]);
+  for (std::size_t field = 0; field < surface.list().size(); ++field) {
+    const auto given = scene.initial.scalars.find(surface.list()[field].name);
+    if (given == scene.initial.scalars.end()) continue;
+    std::vector<double> values(x.size());
+    scene::FieldSampler(given->second, scene)
+        .sample(x.size(), x.data(), y.data(), z.data(), values.data());
+    surface.begin_with(field, std::move(values));
+  }
+}
+
 dynamics::ReferenceProfile profile_over_height(const scene::FieldDescription& field,
                                                const scene::Scene& scene, const char* what,
                                                double bottom, double top, int points) {

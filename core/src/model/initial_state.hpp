@@ -1,9 +1,11 @@
 // From the fields of a scene to the values parcels start with.
 #pragma once
+#include "coupling/surface_fields.hpp"
 #include "dynamics/parcel_motion.hpp"
 #include "dynamics/reference_profile.hpp"
 #include "mesh/grid.hpp"
 #include "parcels/store.hpp"
+#include "pileus/abi.h"
 #include "scene/scene.hpp"
 
 namespace pileus::model {
@@ -20,6 +22,11 @@ void thin_parcels(const scene::Scene& scene, parcels::Store& store);
 template <int D>
 void fill_initial_state(const scene::Scene& scene, const mesh::Grid<D>& grid, parcels::Store& store,
                         dynamics::MeanWind& wind);
+
+/// What the scene's initial state says of quantities of the ground: sampled at the centres of the
+/// columns of cells, z at the bottom, to be what they start with.
+void give_initial_surface(const scene::Scene& scene, const pileus_grid& grid,
+                          coupling::SurfaceFields& surface);
 
 /// A field of the scene over height, tabulated at `points` heights from `bottom` to `top` (m).
 /// Throws Error (usage) naming `what` when it depends on anything but height.

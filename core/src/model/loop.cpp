@@ -12,6 +12,7 @@
 #include "base/signals.hpp"
 #include "model/activation_record.hpp"
 #include "model/failure_files.hpp"
+#include "model/initial_state.hpp"
 #include "model/provenance.hpp"
 #include "output/posix_file.hpp"
 #include "planner/plan_text.hpp"
@@ -73,6 +74,7 @@ void Loop::open_streams(output::Start start) {
 
 void Loop::start(bool overwrite) {
   simulation_->initialise(scene_);
+  give_initial_surface(scene_, simulation_->plugin_grid(), sequence_.surface());
   sequence_.init({0, 0.0, 0.0});
   if (overwrite) {
     // Constructed once for its checks: nothing is removed for a run that cannot start.

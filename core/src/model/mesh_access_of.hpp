@@ -24,7 +24,8 @@ class MeshAccessOf final : public coupling::MeshAccess {
     parcels::Store& store;
     const std::vector<std::size_t>& tile_begin;
     const std::unique_ptr<dynamics::ParcelMotion<D>>& transport;
-    const dynamics::MeanWind& wind;
+    dynamics::MeanWind& wind;
+    double coriolis_parameter;  // s⁻¹
   };
   explicit MeshAccessOf(const Parts& parts) : in_(parts) {}
 
@@ -49,6 +50,13 @@ class MeshAccessOf final : public coupling::MeshAccess {
   }
   void copy_flow_quantity(int which, double* field, int lane) const override {
     mesh::copy_flow_quantity(in_.grid, in_.transport->flow(), which, field, record_width(), lane);
+  }
+
+  double* domain_value(std::string_view name) override {
+    if (name == coupling::mean_wind_names[0]) return &in_.wind.velocity[0];
+    if (D == 3 && name == coupling::mean_wind_names[1]) return &in_.wind.velocity[1];
+    if (D == 3 && name == coupling::coriolis_parameter_name) return &in_.coriolis_parameter;
+    return nullptr;
   }
 
   void confine() override { parcels::confine<D>(in_.store, in_.grid); }

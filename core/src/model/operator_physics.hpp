@@ -32,6 +32,9 @@ class OperatorPhysics final : public Physics {
   void population_changed() override;
   /// The number of the step to come, for a run that does not start at step 0.
   void resume_at(std::uint64_t step) { step_ = step; }
+  bool turns_air_at_the_ground() const override {
+    return coupling::writes_at_the_ground(sequence_.operators(), "z_vorticity");
+  }
   double largest_step() override { return sequence_.dt_limit(); }
 
   /// Effects switched on since the start of the run, those of earlier legs included.

@@ -35,6 +35,8 @@ class Physics : public dynamics::BuoyancySource {
   virtual void apply_after(parcels::Store& store, double time, double dt, std::uint64_t step) = 0;
   /// Parcels were merged, split and reordered.
   virtual void population_changed() = 0;
+  /// Whether an operator may turn air at the ground about the vertical, as uneven drag does.
+  virtual bool turns_air_at_the_ground() const = 0;
   /// Largest step the operators allow (s), infinity when they do not care.
   virtual double largest_step() = 0;
 };

@@ -105,7 +105,8 @@ SimulationOf<D>::SimulationOf(const scene::Scene& scene, std::vector<parcels::Sc
   store_ = std::make_unique<parcels::Store>(D, std::move(scalars), std::move(items));
   variance_budget_ = std::make_unique<VarianceBudget>(scene.diagnostics.variance_budgets, *store_,
                                                       grid_.domain_volume());
-  mesh_access_.reset(new MeshAccessOf<D>({grid_, *store_, tile_begin_, transport_, wind_}));
+  mesh_access_.reset(new MeshAccessOf<D>(
+      {grid_, *store_, tile_begin_, transport_, wind_, scene.background.coriolis[2]}));
 }
 
 template <int D>
@@ -206,7 +207,8 @@ void SimulationOf<D>::place_parcels(const scene::Scene& scene) {
 }
 
 /// Vertical vorticity on a wall stays zero if it starts at zero and nothing turns the frame about
-/// the vertical: Dζ/Dt = (ζ + f_z) w_z there. "Zero" is below a thousandth of the interior's r.m.s.
+/// the vertical, neither Dζ/Dt = (ζ + f_z) w_z nor uneven drag at the ground. "Zero" is below a
+/// thousandth of the interior's r.m.s.
 template <int D>
 std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
   using Choice = scene::Boundaries::WallVorticity;
@@ -214,6 +216,7 @@ std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
     return {false, false};
   if (scene_.boundaries.vertical_vorticity == Choice::zero) return {true, true};
   if (scene_.background.coriolis[2] != 0) return {false, false};
+  const bool dragged = buoyancy_.physics.turns_air_at_the_ground();
   AlignedArray<double> field(grid_.nodes() * mesh::DepositRecord<D>::width);
   parcels::SupportOffsets<D> offsets;
   offsets.update(*store_);
@@ -227,7 +230,7 @@ std::array<bool, 2> SimulationOf<D>::walls_without_vorticity() const {
       (k == 0 ? bottom : k == grid_.nz() ? top : interior) += zeta * zeta;
     }
   const double allowed = 1e-6 * interior / std::max(1, grid_.nz() - 1);
-  return {bottom <= allowed, top <= allowed};
+  return {bottom <= allowed && !dragged, top <= allowed};
 }
 
 /// Bounds and spacing of the mesh: parcels fit no other.

@@ -277,10 +277,13 @@ class Judge {
   }
 
   static bool is_zero(const ListedOperator& op, int parameter) {
-    if (op.table->parameters[static_cast<std::size_t>(parameter)].type != PILEUS_NUMBERS)
-      return op.values->numbers()[parameter] == 0;
+    const std::uint32_t type = op.table->parameters[static_cast<std::size_t>(parameter)].type;
+    const bool function = type == PILEUS_PROFILE || type == PILEUS_SERIES;
+    if (type != PILEUS_NUMBERS && !function) return op.values->numbers()[parameter] == 0;
     const std::vector<double>& list = op.values->list(parameter);
-    return std::all_of(list.begin(), list.end(), [](double value) { return value == 0; });
+    for (std::size_t i = function ? 1 : 0; i < list.size(); i += function ? 2 : 1)
+      if (list[i] != 0) return false;
+    return true;
   }
 
   void describe_parameter(const ListedOperator* op, Fact& fact) const {

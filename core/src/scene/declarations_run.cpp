@@ -19,15 +19,27 @@ RawValue raw_value(Reader& reader, const Entry& entry) {
   raw.key_where = entry.where;
   raw.text = entry.value.text;
   raw.is_list = entry.value.kind == Node::Kind::list;
-  bool scalars = entry.value.kind == Node::Kind::scalar || raw.is_list;
-  for (const Node& item : entry.value.items) {
-    scalars = scalars && item.kind == Node::Kind::scalar;
-    raw.list.push_back(item.text);
+  bool scalars = true;
+  const auto texts = [&](const Node& list) {
+    std::vector<std::string> items;
+    for (const Node& item : list.items) {
+      scalars = scalars && item.kind == Node::Kind::scalar;
+      items.push_back(item.text);
+    }
+    return items;
+  };
+  raw.list = texts(entry.value);
+  for (const Entry& column : entry.value.entries) {
+    scalars = scalars && column.value.kind == Node::Kind::list;
+    raw.columns.emplace_back(column.key, texts(column.value));
   }
+  if (entry.value.kind == Node::Kind::mapping) scalars = scalars && !raw.columns.empty();
   if (!scalars)
-    reader.problem(entry.value,
-                   fmt::format("the parameter '{}' expects a value or a list of values, found {}",
-                               entry.key, describe(entry.value)));
+    reader.problem(
+        entry.value,
+        fmt::format("the parameter '{}' expects a value, a list of values or a mapping of "
+                    "such lists, found {}",
+                    entry.key, describe(entry.value)));
   return raw;
 }
 
@@ -48,6 +60,11 @@ void complete_operator(Reader& reader, const Node& node, void* object) {
 }
 
 Json raw_to_json(const RawValue& raw) {
+  if (!raw.columns.empty()) {
+    Json columns = Json::object();
+    for (const auto& [name, items] : raw.columns) columns[name] = items;
+    return columns;
+  }
   if (!raw.is_list) return raw.text;
   Json list = Json::array();
   for (const std::string& item : raw.list) list.push_back(item);

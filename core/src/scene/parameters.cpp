@@ -86,12 +86,74 @@ class Checker {
     if (good) values = std::move(result);
   }
 
+  /// A function of height or time: one value, or columns of places and values.
+  void function(const ParameterDeclaration& declared, const RawValue& raw,
+                std::vector<double>& pairs) {
+    if (raw.columns.empty()) {
+      double value = declared.fallback;
+      if (raw.is_list)
+        report(declared, raw.where,
+               fmt::format("expected a value or {}, found {}", columns_of(declared), found(raw)),
+               "");
+      else if (number(declared, raw.text, raw.where, value))
+        pairs = {0.0, value};
+      return;
+    }
+    const bool over_height = declared.type == ParameterType::profile;
+    ParameterDeclaration places = declared;
+    places.units = over_height ? "m" : "s";
+    places.low = places.high = 0;
+    std::vector<double> at, value;
+    bool good = true;
+    for (const auto& [name, texts] : raw.columns) {
+      const bool is_value = name == "value";
+      if (!is_value && name != (over_height ? "height" : "time")) {
+        report(declared, raw.where,
+               fmt::format("expected {}, found '{}'", columns_of(declared), name), "");
+        good = false;
+        continue;
+      }
+      std::vector<double>& column = is_value ? value : at;
+      column.resize(texts.size());
+      for (std::size_t i = 0; i < texts.size(); ++i)
+        good = number(is_value ? declared : places, texts[i], raw.where, column[i]) && good;
+    }
+    if (good && fits(declared, raw, at, value)) {
+      pairs.clear();
+      for (std::size_t i = 0; i < at.size(); ++i) pairs.insert(pairs.end(), {at[i], value[i]});
+    }
+  }
+
   static std::string found(const RawValue& raw) {
+    if (!raw.columns.empty()) return "a mapping";
     return raw.is_list ? fmt::format("a list of {}", raw.list.size())
                        : fmt::format("'{}'", raw.text);
   }
 
  private:
+  static std::string columns_of(const ParameterDeclaration& declared) {
+    return fmt::format("the lists '{}' and 'value'",
+                       declared.type == ParameterType::profile ? "height" : "time");
+  }
+
+  bool fits(const ParameterDeclaration& declared, const RawValue& raw,
+            const std::vector<double>& at, const std::vector<double>& value) {
+    const auto ascends = [&] {
+      for (std::size_t i = 1; i < at.size(); ++i)
+        if (!(at[i] > at[i - 1])) return false;
+      return true;
+    };
+    std::string problem;
+    if (at.empty() || at.size() != value.size())
+      problem = fmt::format("it needs {}, equally long: they have {} and {} entries",
+                            columns_of(declared), at.size(), value.size());
+    else if (!ascends())
+      problem = fmt::format("its {} must ascend",
+                            declared.type == ParameterType::profile ? "heights" : "times");
+    if (!problem.empty()) report(declared, raw.where, problem, "");
+    return problem.empty();
+  }
+
   bool in_range(const ParameterDeclaration& declared, double value, const std::string& text,
                 const Location& where) {
     if (declared.low == declared.high || (value >= declared.low && value <= declared.high))
@@ -108,6 +170,10 @@ class Checker {
   Problems& problems_;
 };
 
+bool is_function(const ParameterDeclaration& parameter) {
+  return parameter.type == ParameterType::profile || parameter.type == ParameterType::series;
+}
+
 void set_defaults(std::span<const ParameterDeclaration> declared, ParameterValues& values) {
   for (const ParameterDeclaration& parameter : declared) {
     const bool is_choice = parameter.type == ParameterType::choice;
@@ -116,6 +182,7 @@ void set_defaults(std::span<const ParameterDeclaration> declared, ParameterValue
                                                                   : parameter.text_fallback);
     values.list.emplace_back();
     if (parameter.type == ParameterType::numbers) values.list.back() = {parameter.fallback};
+    if (is_function(parameter)) values.list.back() = {0.0, parameter.fallback};
     values.given.push_back(false);
   }
 }
@@ -146,7 +213,11 @@ ParameterValues validate_parameters(const OperatorBlock& block,
     const auto i = static_cast<std::size_t>(place - names.begin());
     const ParameterDeclaration& parameter = declared[i];
     values.given[i] = true;
-    if (parameter.type == ParameterType::integer)
+    if (is_function(parameter))
+      checker.function(parameter, raw, values.list[i]);
+    else if (!raw.columns.empty())
+      checker.report(parameter, raw.where, "expected a value, found a mapping", "");
+    else if (parameter.type == ParameterType::integer)
       checker.integer(parameter, raw, values.number[i]);
     else if (parameter.type == ParameterType::toggle)
       checker.toggle(parameter, raw, values.number[i]);

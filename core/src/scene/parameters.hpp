@@ -10,7 +10,7 @@
 
 namespace pileus::scene {
 
-enum class ParameterType { number, integer, toggle, choice, text, numbers };
+enum class ParameterType { number, integer, toggle, choice, text, numbers, profile, series };
 
 /// One parameter as its plugin declares it.
 struct ParameterDeclaration {
@@ -29,7 +29,7 @@ struct ParameterDeclaration {
 struct ParameterValues {
   std::vector<double> number;             // numbers, integers, switches, index of the choice
   std::vector<std::string> text;          // text and choices as words
-  std::vector<std::vector<double>> list;  // numbers
+  std::vector<std::vector<double>> list;  // numbers; of functions x0, v0, x1, v1 …
   std::vector<bool> given;                // stated by the scene
 };
 

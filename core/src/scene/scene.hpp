@@ -134,6 +134,8 @@ struct RawValue {
   std::vector<std::string> list;
   Location where;      // of the value
   Location key_where;  // of the key
+  /// A mapping of lists, as a function is written: {height: […], value: […]}.
+  std::vector<std::pair<std::string, std::vector<std::string>>> columns = {};
 };
 
 struct OperatorBlock {

@@ -153,6 +153,21 @@ Json field_schema() {
           {"else", {{"type", Json::array({"number", "string"})}}}};
 }
 
+/// One value, or a list of values with a list of the places where they hold.
+Json function_schema(const ParameterDeclaration& parameter, const Range& range) {
+  const char* places = parameter.type == ParameterType::profile ? "height" : "time";
+  const auto list = [](const Json& item) {
+    return Json{{"type", "array"}, {"minItems", 1}, {"items", item}};
+  };
+  return {{"anyOf", Json::array({quantity_schema(range),
+                                 Json{{"type", "object"},
+                                      {"required", {places, "value"}},
+                                      {"additionalProperties", false},
+                                      {"properties",
+                                       {{places, list(quantity_schema({}))},
+                                        {"value", list(quantity_schema(range))}}}}})}};
+}
+
 Json parameter_schema(const ParameterDeclaration& parameter) {
   Range range;
   if (parameter.low != parameter.high) {
@@ -182,6 +197,10 @@ Json parameter_schema(const ParameterDeclaration& parameter) {
                  Json::array({quantity_schema(range), Json{{"type", "array"},
                                                            {"minItems", 1},
                                                            {"items", quantity_schema(range)}}})}};
+      break;
+    case ParameterType::profile:
+    case ParameterType::series:
+      schema = function_schema(parameter, range);
       break;
     default:
       schema = quantity_schema(range);

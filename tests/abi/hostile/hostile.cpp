@@ -223,7 +223,7 @@ extern "C" PILEUS_EXPORT const pileus_module* HOSTILE_ENTRY(void) {
     HOSTILE_MAGIC,
     is("wrong_major") ? 7u : PILEUS_ABI_MAJOR,
     PILEUS_ABI_MINOR,
-    is("newer_minor") ? 3u : 0u,
+    is("newer_minor") ? PILEUS_ABI_MINOR + 1u : 0u,
     is("fast_math") ? std::uint32_t{PILEUS_BUILT_FASTMATH} : 0u,
     "org.example.hostile",
     "1.0.0",

@@ -59,10 +59,17 @@ class SampledMesh final : public coupling::MeshAccess {
       field[node * static_cast<std::size_t>(record_width()) + static_cast<std::size_t>(lane)] =
           flow_(names_[static_cast<std::size_t>(which)], node);
   }
+  double* domain_value(std::string_view name) override {
+    for (std::size_t d = 0; d + 1 < std::size_t{D}; ++d)
+      if (name == coupling::mean_wind_names[d]) return &mean_wind[d];
+    return D == 3 && name == coupling::coriolis_parameter_name ? &coriolis_parameter : nullptr;
+  }
   void confine() override { parcels::confine<D>(store_, grid_); }
   void blunt_shapes() override {}
 
   int deposits = 0, evaluations = 0;
+  std::array<double, 2> mean_wind{};  // m s⁻¹
+  double coriolis_parameter = 0;      // s⁻¹
 
  private:
   mesh::Grid<D> grid_;
@@ -75,6 +82,30 @@ class SampledMesh final : public coupling::MeshAccess {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
+/// The entries of "[a, b, c]".
+inline std::vector<std::string> texts_of(const std::string& list) {
+  std::vector<std::string> texts;
+  std::string rest = list.substr(1, list.size() - 2);
+  for (std::size_t at; !rest.empty(); rest = at == rest.npos ? "" : rest.substr(at + 2)) {
+    at = rest.find(", ");
+    texts.push_back(rest.substr(0, at));
+  }
+  return texts;
+}
+
+/// The lists of "{height: [a, b], value: [c, d]}".
+inline std::vector<std::pair<std::string, std::vector<std::string>>> columns_of(
+    const std::string& mapping) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> columns;
+  for (std::size_t at = 1; at < mapping.size();) {
+    const std::size_t colon = mapping.find(": ", at), end = mapping.find(']', colon);
+    columns.emplace_back(mapping.substr(at, colon - at),
+                         texts_of(mapping.substr(colon + 2, end - colon - 1)));
+    at = end + (mapping.compare(end, 3, "], ") == 0 ? 3 : 2);
+  }
+  return columns;
+}
+
 /// A sequence of one in-tree plugin; problems of the scene are errors.
 inline std::unique_ptr<coupling::OperatorSequence> plugin_sequence(
     const char* id, const Settings& settings, std::vector<std::string> initial,
@@ -85,13 +116,10 @@ inline std::unique_ptr<coupling::OperatorSequence> plugin_sequence(
   block.name = "subject";
   for (const auto& [key, text] : settings) {
     scene::RawValue value{text, false, {}, {}, {}};
-    if (text.starts_with('[')) {  // [a, b, c]
-      value = {"", true, {}, {}, {}};
-      std::string rest = text.substr(1, text.size() - 2);
-      for (std::size_t at; !rest.empty(); rest = at == rest.npos ? "" : rest.substr(at + 2)) {
-        at = rest.find(", ");
-        value.list.push_back(rest.substr(0, at));
-      }
+    if (text.starts_with('[')) {
+      value = {"", true, texts_of(text), {}, {}};
+    } else if (text.starts_with('{')) {  // {height: [a, b], value: [c, d]}
+      value.columns = columns_of(text);
     }
     block.parameters.push_back({key, value});
   }

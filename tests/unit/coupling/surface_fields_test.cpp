@@ -225,9 +225,52 @@ TEST(Surface, is_refused_to_those_who_would_make_results_depend_on_threads) {
       "in no fixed order; its scope has to be global");
   expect_in(complaint(changed<Drizzle>(
                 [](auto&, pileus_quantity& row) { row.access = PILEUS_READ | PILEUS_WRITE; })),
-            "to overwrite it; it can be added to");
+            "to overwrite it; only its owner does, others add to it");
   expect_in(complaint(changed<Drizzle>([](auto&, pileus_quantity& row) { row.components = 2; })),
             "one double-precision number per column of cells");
+}
+
+/// Multiplies what it owns of the ground by two, and tells the parcels the last column's value.
+/// Rejects steps above 1 s after having taken them.
+class Soil : public Operator<Soil> {
+ public:
+  void describe(Declaration& d) {
+    introduce(d, "test.soil");
+    d.op.scope = PILEUS_GLOBAL;
+    ground = d.owns_on_surface("rainfall_amount", "kg m-2").initial(3).range(0, 1e3);
+    tracer = d.owns("passive_tracer", "1").intensive().range(0, 1e6);
+  }
+  void apply(const pileus_step& step, Block block) const {
+    double* value = block.out(ground);
+    for (std::int64_t c = 0; c < block.elements(ground); ++c) value[c] *= 2;
+    block.each([&](auto p) { block.out(tracer)[p] = value[block.elements(ground) - 1]; });
+    if (step.dt > 1) throw Retry("too long");
+  }
+
+ private:
+  Slot ground, tracer;
+};
+
+TEST(Surface, is_overwritten_by_its_owner_and_put_back_before_a_retry) {
+  ToyRun run(entries_of<Soil>({"soil"}), 10, {}, grid_of(4, 2));
+  run.step(0, 1.0);
+  EXPECT_EQ(run.sequence.surface().values(0), std::vector<double>(8, 6.0));
+  EXPECT_EQ(run.values("passive_tracer")[9], 6.0);
+  run.step(1, 2.0);  // twice 1 s
+  EXPECT_EQ(run.sequence.surface().values(0), std::vector<double>(8, 24.0));
+}
+
+TEST(Surface, starts_at_what_it_is_given_column_by_column) {
+  coupling::SequenceOptions options;
+  options.initial = {"rainfall_amount"};
+  ToyRun run(entries_of<Soil>({"soil"}), 1, options, grid_of(2, 1));
+  EXPECT_EQ(run.sequence.surface().values(0), std::vector<double>(2, 3.0));
+  run.sequence.surface().begin_with(0, {5, 7});
+  run.sequence.surface().start(2);
+  run.step(0, 1.0);
+  EXPECT_EQ(run.sequence.surface().values(0), (std::vector<double>{10, 14}));
+  expect_in(complaint(changed<Soil>([](pileus_operator& op, auto&) { op.scope = PILEUS_LOCAL; })),
+            "in no fixed order; its scope has to be global");
 }
 
 TEST(Surface, contradictions_are_named) {

@@ -19,6 +19,8 @@ std::vector<ParameterDeclaration> declarations() {
        .type = ParameterType::numbers,
        .units = "m",
        .when = "thermodynamics == real"},
+      {.name = "descent", .type = ParameterType::profile, .units = "m s-1", .low = -1, .high = 1},
+      {.name = "warming", .type = ParameterType::series, .units = "K s-1", .fallback = 2},
   };
 }
 
@@ -60,7 +62,7 @@ TEST(Parameters, AreIntegersThatADoubleHolds) {
 TEST(Parameters, TakeDefaultsUnitsAndConstants) {
   const Checked plain = check("");
   EXPECT_EQ(plain.problems, "");
-  EXPECT_EQ(plain.values.number, (std::vector<double>{0, 3600, 6, 0, 0, 0}));
+  EXPECT_EQ(plain.values.number, (std::vector<double>{0, 3600, 6, 0, 0, 0, 0, 2}));
   EXPECT_EQ(plain.values.text[0], "ideal");
   EXPECT_EQ(plain.values.text[4], "standard");
   EXPECT_EQ(plain.values.list[5], std::vector<double>{0});
@@ -114,6 +116,36 @@ TEST(Conditions, JoinComparisons) {
   EXPECT_FALSE(condition_holds("ice == true and thermodynamics != real", declared, values));
   EXPECT_FALSE(condition_holds("ice != true", declared, values));
   EXPECT_TRUE(condition_holds("iterations == 7", declared, values));
+}
+
+TEST(Parameters, AreFunctionsOfHeightOrTime) {
+  using List = std::vector<double>;
+  const Checked all = check(
+      ", descent: {height: [0 m, 1.5 km], value: [0 cm/s, -25 cm/s]}, warming: {time: [0 h, 1 "
+      "h], "
+      "value: [1, 0]}");
+  EXPECT_EQ(all.problems, "");
+  EXPECT_EQ(all.values.list[6], (List{0, 0, 1500, -0.25}));
+  EXPECT_EQ(all.values.list[7], (List{0, 1, 3600, 0}));
+  const Checked constant = check(", descent: -0.5");
+  EXPECT_EQ(constant.values.list[6], (List{0, -0.5}));
+  EXPECT_EQ(constant.values.list[7], (List{0, 2}));
+}
+
+TEST(Parameters, OfHeightOrTimeNameTheirMistakes) {
+  const auto expect_problem = [](const std::string& text, const std::string& phrase) {
+    const std::string problems = check(", " + text).problems;
+    EXPECT_NE(problems.find(phrase), std::string::npos) << problems;
+  };
+  expect_problem("descent: [0, 1]", "expected a value or the lists 'height' and 'value'");
+  expect_problem("descent: {time: [0 s], value: [0]}",
+                 "expected the lists 'height' and 'value', found 'time'");
+  expect_problem("descent: {height: [0 m, 1 m], value: [0]}", "they have 2 and 1 entries");
+  expect_problem("descent: {height: [1 m, 1 m], value: [0, 0]}", "its heights must ascend");
+  expect_problem("descent: {height: [0 m], value: [2]}", "must be between -1 and 1 m s-1");
+  expect_problem("descent: {height: [0 s], value: [0]}", "descent");
+  expect_problem("warming: {time: [0 s, -1 s], value: [0, 1]}", "its times must ascend");
+  expect_problem("time_scale: {height: [0 m], value: [0]}", "expected a value, found a mapping");
 }
 
 }  // namespace

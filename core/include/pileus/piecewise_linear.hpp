@@ -1,0 +1,80 @@
+// A function of one variable given at points: what a parameter over height or time means.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace pileus {
+
+/// Linear between its points, constant beyond the first and the last.
+class PiecewiseLinear {
+ public:
+  PiecewiseLinear() : points_{{0.0, 0.0}} {}
+  /// From x_0, v_0, x_1, v_1, … with ascending x; as parameters of the type profile hold them.
+  explicit PiecewiseLinear(std::span<const double> pairs) {
+    for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+      points_.push_back({pairs[i], pairs[i + 1]});
+    if (points_.empty()) points_.push_back({0.0, 0.0});
+  }
+
+  struct Point {
+    double at, value;
+  };
+  std::span<const Point> points() const { return points_; }
+
+  bool is_constant() const {
+    return std::all_of(points_.begin(), points_.end(),
+                       [&](const Point& p) { return p.value == points_.front().value; });
+  }
+  bool is_zero() const { return points_.front().value == 0 && is_constant(); }
+
+  double operator()(double x) const {
+    // What is not a number counts as the lower end: it must not lead outside the list.
+    if (!(x > points_.front().at)) return points_.front().value;
+    if (x >= points_.back().at) return points_.back().value;
+    const std::size_t k = segment(x);
+    const Point &a = points_[k], &b = points_[k + 1];
+    return a.value + (x - a.at) / (b.at - a.at) * (b.value - a.value);
+  }
+
+  /// Slope at x; at a point that of what follows.
+  double derivative(double x) const {
+    if (!(x >= points_.front().at) || x >= points_.back().at) return 0;
+    const std::size_t k = segment(x);
+    const Point &a = points_[k], &b = points_[k + 1];
+    return (b.value - a.value) / (b.at - a.at);
+  }
+
+  /// ∫ from a to b (a ≤ b), exact.
+  double integral(double a, double b) const {
+    return over_pieces(a, b, [this](double from, double to) {
+      return 0.5 * ((*this)(from) + (*this)(to)) * (to - from);
+    });
+  }
+
+  /// Sum of piece(from, to) over the parts of [a, b] in each of which the function is linear.
+  template <class Piece>
+  double over_pieces(double a, double b, Piece&& piece) const {
+    double sum = 0, from = a;
+    for (const Point& p : points_) {
+      if (p.at <= from) continue;
+      if (p.at >= b) break;
+      sum += piece(from, p.at);
+      from = p.at;
+    }
+    return b > from ? sum + piece(from, b) : sum;
+  }
+
+ private:
+  /// The k with x_k ≤ x < x_{k+1}, for x within the points.
+  std::size_t segment(double x) const {
+    const auto above = std::upper_bound(points_.begin(), points_.end(), x,
+                                        [](double value, const Point& p) { return value < p.at; });
+    return static_cast<std::size_t>(above - points_.begin()) - 1;
+  }
+
+  std::vector<Point> points_;
+};
+
+}  // namespace pileus
