@@ -1,10 +1,13 @@
 #include "model/diagnostics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "coupling/quantity_plan.hpp"
 
@@ -81,7 +84,7 @@ int Diagnostics::index(const std::string& name) const {
 Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation,
                          const coupling::SurfaceFields& surface,
                          const std::vector<std::string>& changed,
-                         const std::vector<std::string>& budgets)
+                         const std::vector<std::string>& budgets, const SlabStatistics* slabs)
     : potential_energy_(scene),
       soundness_(simulation, changed),
       item_measures_(simulation.store().items()),
@@ -136,7 +139,22 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
     for (const auto& [name, units, text] : histograms_.back().outputs())
       entries.push_back(add(name, units, text));
   }
+  if (slabs != nullptr) {
+    slab_series_.emplace(scene, simulation, surface, *slabs);
+    add_slab_series();
+  }
   values_.assign(list_.size(), 0.0);
+}
+
+void Diagnostics::add_slab_series() {
+  for (const auto& [name, units, text] : slab_series_->outputs()) {
+    if (index(name) >= 0)
+      throw Error(ExitCode::usage,
+                  fmt::format("diagnostics.slabs.values: '{}' is the name of a diagnostic that "
+                              "this run has anyway; give the value another one.",
+                              name));
+    slab_entries_.push_back(add(name, units, text));
+  }
 }
 
 void Diagnostics::add_scalars(const parcels::Store& store) {
@@ -253,6 +271,11 @@ void Diagnostics::observe_state(Simulation& simulation) {
     const std::vector<double> found = histograms_[i].measure(simulation);
     for (std::size_t k = 0; k < found.size(); ++k) set(histogram_entries_[i][k], found[k]);
   }
+}
+
+void Diagnostics::observe_slabs(const Simulation& simulation) {
+  const std::vector<double> found = slab_series_->observe(simulation);
+  for (std::size_t k = 0; k < found.size(); ++k) set(slab_entries_[k], found[k]);
 }
 
 void Diagnostics::observe_budgets(const std::vector<output::BudgetSummary>& budgets) {

@@ -11,6 +11,7 @@
 #include "model/item_measures.hpp"
 #include "model/potential_energy.hpp"
 #include "model/simulation.hpp"
+#include "model/slab_series.hpp"
 #include "model/soundness.hpp"
 #include "model/water_path.hpp"
 #include "output/summary.hpp"
@@ -29,10 +30,11 @@ struct DiagnosticInfo {
 class Diagnostics {
  public:
   /// `surface`: of the run's operators; it has to outlive this. `changed` names the quantities that
-  /// operators may change, `budgets` the totals that the run keeps books of.
+  /// operators may change, `budgets` the totals that the run keeps books of, `slabs` the statistics
+  /// of slabs, null where none are wanted; these have to outlive this, too.
   Diagnostics(const scene::Scene& scene, const Simulation& simulation,
               const coupling::SurfaceFields& surface, const std::vector<std::string>& changed,
-              const std::vector<std::string>& budgets);
+              const std::vector<std::string>& budgets, const SlabStatistics* slabs = nullptr);
 
   const std::vector<DiagnosticInfo>& list() const { return list_; }
   int index(const std::string& name) const;  // −1: there is none of that name
@@ -41,14 +43,22 @@ class Diagnostics {
   void observe_state(Simulation& simulation);
   /// Part that needs the parcels' velocity; call after begin_step() or probe().
   void observe_velocity(Simulation& simulation);
+  /// Part that is read off the slabs; after `slabs` has measured the state.
+  void observe_slabs(const Simulation& simulation);
   /// What became of the budgets, in their order at construction.
   void observe_budgets(const std::vector<output::BudgetSummary>& budgets);
   /// One value per entry of list(), of the state last observed.
   const std::vector<double>& values() const { return values_; }
 
-  /// What later states are compared with, for a run that continues.
-  void save(output::NamedData& data) const { soundness_.save(data); }
-  void restore(const output::NamedData& data) { soundness_.restore(data); }
+  /// What later states are compared with and averaged with, for a run that continues at `time` (s).
+  void save(output::NamedData& data, double time) const {
+    soundness_.save(data);
+    if (slab_series_) slab_series_->save(data, time);
+  }
+  void restore(const output::NamedData& data) {
+    soundness_.restore(data);
+    if (slab_series_) slab_series_->restore(data);
+  }
 
  private:
   int add(std::string name, std::string units, std::string long_name, bool conserved = false);
@@ -63,6 +73,7 @@ class Diagnostics {
   void add_water(const scene::Scene& scene, const Simulation& simulation);
   void add_gridded_measures(const scene::Scene& scene, const Simulation& simulation);
   void observe_gridded_measures(Simulation& simulation);
+  void add_slab_series();
 
   struct ModeEntries {
     Mode mode;
@@ -93,6 +104,8 @@ class Diagnostics {
   std::vector<std::vector<int>> histogram_entries_;
   std::vector<int> variance_entries_;
   std::vector<ScalarEntries> scalars_;
+  std::optional<SlabSeries> slab_series_;
+  std::vector<int> slab_entries_;
   const coupling::SurfaceFields& surface_;
   std::vector<SurfaceEntries> surface_entries_;
   std::vector<int> budget_entries_;

@@ -59,8 +59,11 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
   std::vector<std::string> budgets;
   for (const coupling::BudgetTotal& total : sequence_.ledger().totals)
     budgets.push_back(total.budget);
-  diagnostics_ = std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface(),
-                                               sequence_.changed_quantities(), budgets);
+  if (scene.diagnostics.slabs.wanted)
+    slabs_ = std::make_unique<SlabStatistics>(scene, *simulation_);
+  diagnostics_ =
+      std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface(),
+                                    sequence_.changed_quantities(), budgets, slabs_.get());
   check_expectations(scene.expect, diagnostics_->list());
   record_ = std::make_unique<Record>(diagnostics_->list());
 }
@@ -68,8 +71,9 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
 Loop::~Loop() = default;
 
 void Loop::open_streams(output::Start start) {
-  streams_ = std::make_unique<OutputStreams>(scene_, *simulation_, sequence_.surface(), *record_,
-                                             directory_, run_provenance(scene_, plan_), start);
+  streams_ =
+      std::make_unique<OutputStreams>(scene_, *simulation_, sequence_.surface(), slabs_.get(),
+                                      *record_, directory_, run_provenance(scene_, plan_), start);
 }
 
 void Loop::start(bool overwrite) {
@@ -104,7 +108,7 @@ bool Loop::resume() {
   restore_totals(checkpoint.data);
   // The record of the checkpoint's own time is written again: a checkpoint precedes its outputs.
   open_streams(output::Start::resume_at(std::nextafter(checkpoint.time, -1.0)));
-  streams_->resume(*record_);
+  streams_->resume(*record_, checkpoint.data);
   output::replace_file(directory_ / "plan.json", planner::plan_json(plan_));
   progress_.message(fmt::format("continuing from {} (t = {:.6g} s, step {})",
                                 path->filename().string(), checkpoint.time, checkpoint.step));
@@ -191,6 +195,7 @@ void Loop::finish_step() {
 void Loop::observe_and_begin(double until, bool last) {
   const double time = simulation_->time();
   const bool observe = last || record_->size() == 0 || streams_->series_due(time);
+  const bool slabs = slabs_ && (observe || streams_->wants_slabs(time, last));
   {
     const PhaseScope scope(simulation_->times(), Phase::output);
     streams_->write_due(*simulation_, last);
@@ -201,6 +206,8 @@ void Loop::observe_and_begin(double until, bool last) {
     if (!initial_budgets_.empty())
       diagnostics_->observe_budgets(budget_summaries(sequence_.ledger()));
   }
+  // Last of all: it takes the flow on the mesh.
+  if (slabs) observe_slabs(observe);
   const double before = core_seconds();
   if (last)
     simulation_->probe();
@@ -212,6 +219,22 @@ void Loop::observe_and_begin(double until, bool last) {
   diagnostics_->observe_velocity(*simulation_);
   record_->append(time, diagnostics_->values());
   streams_->series_done(time);
+}
+
+/// The parcels' velocity has to belong to their state before the first stage moves them. Once for
+/// the series, a sample and a record of profiles.
+void Loop::observe_slabs(bool for_series) {
+  const double time = simulation_->time();
+  const bool for_profiles = streams_->has_open_profiles();
+  {
+    const PhaseScope scope(simulation_->times(), Phase::diagnostics);
+    simulation_->probe();
+    slabs_->measure(*simulation_);
+    if (for_series) diagnostics_->observe_slabs(*simulation_);
+  }
+  if (!for_profiles) return;
+  const PhaseScope scope(simulation_->times(), Phase::output);
+  streams_->write_slabs(time);
 }
 
 /// End of the next step: equal steps, none longer than allowed, to the next time an output or the
@@ -253,7 +276,8 @@ void Loop::checkpoint() {
       simulation_->time(), simulation_->step(), simulation_->last_dt(), {}};
   simulation_->save(checkpoint.data);
   record_->save(checkpoint.data);
-  diagnostics_->save(checkpoint.data);
+  diagnostics_->save(checkpoint.data, checkpoint.time);
+  streams_->save(checkpoint.data, checkpoint.time);
   save_totals(checkpoint.data);
   checkpoint.data.arrays["books"] = sequence_.books();
   checkpoint.data.arrays.merge(sequence_.surface().named_values());

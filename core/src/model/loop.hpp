@@ -13,6 +13,7 @@
 #include "model/plan_run.hpp"
 #include "model/record.hpp"
 #include "model/simulation.hpp"
+#include "model/slab_statistics.hpp"
 #include "output/run_directory.hpp"
 #include "scene/scene.hpp"
 
@@ -48,6 +49,7 @@ class Loop {
   void advance();
   void timed_evaluate();
   void observe_and_begin(double until, bool last);
+  void observe_slabs(bool for_series);
   void finish_step();
   double next_time(double allowed) const;
   void checkpoint();
@@ -71,6 +73,7 @@ class Loop {
   coupling::OperatorSequence sequence_;
   OperatorPhysics physics_;
   std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<SlabStatistics> slabs_;  // null where none are wanted
   std::unique_ptr<Diagnostics> diagnostics_;
   std::unique_ptr<Record> record_;
   std::unique_ptr<OutputStreams> streams_;

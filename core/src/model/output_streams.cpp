@@ -4,53 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
-#include "base/nearest_word.hpp"
-#include "base/quantities.hpp"
+#include "model/output_variables.hpp"
 
 namespace pileus::model {
 namespace {
-
-/// Fills in what the register of quantities knows about a variable.
-output::Variable described(output::Variable variable) {
-  if (const Quantity* q = find_quantity(variable.name)) {
-    variable.long_name = std::string(q->definition);
-    variable.standard_name = std::string(q->standard_name);
-  }
-  return variable;
-}
-
-std::string standard_name_of(const std::string& name) {
-  const Quantity* q = find_quantity(name);
-  return q != nullptr ? std::string(q->standard_name) : std::string();
-}
-
-/// The wanted variables out of those that exist, in the wanted order; all when none is named.
-std::vector<output::Variable> choose(const std::vector<std::string>& wanted,
-                                     const std::vector<output::Variable>& existing,
-                                     const std::string& stream) {
-  std::vector<output::Variable> chosen;
-  std::vector<std::string> names;
-  for (const auto& variable : existing) names.push_back(variable.name);
-  if (wanted.empty()) {
-    for (const auto& variable : existing) chosen.push_back(described(variable));
-    return chosen;
-  }
-  for (const std::string& name : wanted) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-      const std::string nearest = nearest_word(name, names);
-      throw Error(ExitCode::usage,
-                  fmt::format("output.{}: there is no variable '{}' in this run; {}.", stream, name,
-                              nearest.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
-                                              : fmt::format("did you mean '{}'?", nearest)));
-    }
-    chosen.push_back(described(existing[static_cast<std::size_t>(found - names.begin())]));
-  }
-  return chosen;
-}
 
 std::vector<output::Variable> parcel_columns(const parcels::Store& store) {
   std::vector<output::Variable> columns;
@@ -73,57 +32,22 @@ std::vector<output::Variable> ground_variables(const coupling::SurfaceFields& su
   return variables;
 }
 
-/// Horizontal means of every field, the variance of the upward velocity and the buoyancy flux.
-std::vector<output::Variable> profile_variables(const std::vector<output::Variable>& fields) {
-  std::vector<output::Variable> variables;
-  for (const auto& field : fields) {
-    output::Variable mean = described(field);
-    mean.standard_name.clear();
-    mean.long_name = "horizontal mean of " + mean.long_name;
-    variables.push_back(mean);
-  }
-  variables.push_back({"z_velocity_variance", "m2 s-2", "variance of the upward velocity", ""});
-  variables.push_back({"buoyancy_flux", "m2 s-3", "resolved vertical flux of buoyancy", ""});
-  return variables;
-}
-
-std::vector<std::string> names_of(const std::vector<output::Variable>& variables) {
-  std::vector<std::string> names;
-  for (const output::Variable& variable : variables) names.push_back(variable.name);
-  return names;
-}
-
 output::Encoding encoding_of(const scene::OutputControl& control) {
   return {false, control.compress, control.mantissa_bits};
 }
 
 }  // namespace
 
-double Schedule::next() const {
-  return every_ > 0 ? count_ * every_ : std::numeric_limits<double>::infinity();
-}
-
-double Schedule::next_after(double time) const {
-  if (!(every_ > 0)) return std::numeric_limits<double>::infinity();
-  return (std::floor(time / every_ + 1e-9) + 1) * every_;
-}
-
-void Schedule::done(double time) {
-  if (every_ > 0) count_ = std::floor(time / every_ + 1e-9) + 1;
-}
-
 OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simulation,
-                             const coupling::SurfaceFields& surface, const Record& record,
-                             const output::RunDirectory& directory,
+                             const coupling::SurfaceFields& surface, const SlabStatistics* slabs,
+                             const Record& record, const output::RunDirectory& directory,
                              const output::Provenance& provenance, output::Start start)
     : surface_(surface),
       fields_schedule_(scene.output.fields.every),
       parcels_schedule_(scene.output.parcels.every),
-      profiles_schedule_(scene.output.profiles.every),
       series_schedule_(scene.output.series.every),
       spectra_schedule_(scene.output.spectra.every),
       droplets_schedule_(scene.output.droplets.every) {
-  const std::vector<output::Variable> fields = simulation.grid_fields();
   if (scene.output.fields.every > 0)
     open_fields(scene.output, simulation, directory / "fields.nc", provenance, start);
   if (scene.output.parcels.every > 0)
@@ -131,13 +55,9 @@ OutputStreams::OutputStreams(const scene::Scene& scene, const Simulation& simula
         directory / "parcels.nc", simulation.dimension(),
         choose(scene.output.parcels.variables, parcel_columns(simulation.store()), "parcels"),
         provenance, encoding_of(scene.output), start);
-  if (scene.output.profiles.every > 0) {
-    profile_variables_ =
-        choose(scene.output.profiles.variables, profile_variables(fields), "profiles");
-    profiles_ =
-        std::make_unique<output::ProfileFile>(directory / "profiles.nc", simulation.axes().front(),
-                                              profile_variables_, provenance, start);
-  }
+  if (scene.output.profiles.every > 0)
+    profiles_ = std::make_unique<ProfileStream>(scene.output.profiles, simulation, slabs,
+                                                directory / "profiles.nc", provenance, start);
   open_item_streams(scene.output, simulation, directory, provenance, start);
   std::vector<output::Variable> numbers;
   for (const DiagnosticInfo& d : record.list())
@@ -206,11 +126,7 @@ void OutputStreams::write_due(Simulation& simulation, bool last) {
     parcels_schedule_.done(time);
     parcel_time_ = time;
   }
-  if (profiles_ && (last || profiles_schedule_.due(time)) && time > profile_time_) {
-    write_profiles(simulation);
-    profiles_schedule_.done(time);
-    profile_time_ = time;
-  }
+  if (profiles_) profiles_->take_grid(simulation, last);
   write_item_streams(simulation, last);
 }
 
@@ -236,45 +152,6 @@ void OutputStreams::write_fields(Simulation& simulation) {
   fields_->append(simulation.time(), values_);
 }
 
-void OutputStreams::write_profiles(Simulation& simulation) {
-  const std::size_t levels = profiles_->record_size();
-  const std::size_t columns = simulation.node_count() / levels;
-  const auto mean_of_product = [&](const std::vector<double>& a, const std::vector<double>* b) {
-    std::vector<double> mean(levels, 0.0);
-    for (std::size_t k = 0; k < levels; ++k) {
-      for (std::size_t c = 0; c < columns; ++c)
-        mean[k] += a[k * columns + c] * (b ? (*b)[k * columns + c] : 1.0);
-      mean[k] /= static_cast<double>(columns);
-    }
-    return mean;
-  };
-  const auto is_product = [](const std::string& name) {
-    return name == "z_velocity_variance" || name == "buoyancy_flux";
-  };
-  std::vector<std::string> names = names_of(profile_variables_);
-  std::erase_if(names, is_product);
-  const std::size_t means = names.size();
-  names.insert(names.end(), {"z_velocity", "buoyancy"});
-  std::vector<std::vector<double>> fields;
-  simulation.grid(names, fields);
-  const std::vector<double>&w = fields[means], &b = fields[means + 1];
-  const std::vector<double> mean_w = mean_of_product(w, nullptr),
-                            mean_b = mean_of_product(b, nullptr);
-  values_.resize(profile_variables_.size());
-  for (std::size_t v = 0, next = 0; v < profile_variables_.size(); ++v) {
-    const std::string& name = profile_variables_[v].name;
-    if (!is_product(name)) {
-      values_[v] = mean_of_product(fields[next++], nullptr);
-      continue;
-    }
-    const bool variance = name == "z_velocity_variance";
-    values_[v] = mean_of_product(w, variance ? &w : &b);
-    for (std::size_t k = 0; k < levels; ++k)
-      values_[v][k] -= mean_w[k] * (variance ? mean_w[k] : mean_b[k]);
-  }
-  profiles_->append(simulation.time(), values_);
-}
-
 void OutputStreams::flush_series(const Record& record) {
   const std::vector<double>& written = series_->times();
   std::size_t first = 0;
@@ -291,11 +168,11 @@ void OutputStreams::flush_series(const Record& record) {
   series_->append_records(times, values);
 }
 
-void OutputStreams::resume(const Record& record) {
+void OutputStreams::resume(const Record& record, const output::NamedData& data) {
   // Not from the time of the checkpoint: a stream on which steps do not land may be overdue there.
   if (fields_) fields_schedule_.resume_after(fields_->records().times());
   if (parcels_) parcels_schedule_.resume_after(parcels_->times());
-  if (profiles_) profiles_schedule_.resume_after(profiles_->times());
+  if (profiles_) profiles_->resume(data);
   series_schedule_.resume_after(record.times());
   if (spectra_) spectra_schedule_.resume_after(spectra_->times());
   if (droplets_) droplets_schedule_.resume_after(droplets_->times());

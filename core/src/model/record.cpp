@@ -27,19 +27,32 @@ double Record::at(std::size_t diagnostic, double time) const {
 }
 
 const std::vector<std::string>& known_statistics() {
-  static const std::vector<std::string> words = {"initial",       "final",       "min",
-                                                 "max",           "mean",        "relative_change",
-                                                 "relative_rise", "growth_rate", "first_time_above",
-                                                 "mean_deviation"};
+  static const std::vector<std::string> words = {"initial",
+                                                 "final",
+                                                 "min",
+                                                 "max",
+                                                 "mean",
+                                                 "relative_change",
+                                                 "relative_rise",
+                                                 "growth_rate",
+                                                 "first_time_above",
+                                                 "mean_deviation",
+                                                 "first_value"};
   return words;
 }
 
 namespace {
 
+/// Mean of what there is: a measure without a value at a time is not a number there.
 double mean_of(std::span<const double> values) {
   double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
+  std::size_t count = 0;
+  for (const double v : values) {
+    if (std::isnan(v)) continue;
+    sum += v;
+    ++count;
+  }
+  return sum / static_cast<double>(count);
 }
 
 /// ⟨|1 − v/⟨v⟩|⟩, the measure of Frey et al. (2023) for what an invariant does over a run.
@@ -48,6 +61,26 @@ double mean_deviation(std::span<const double> values) {
   double sum = 0;
   for (const double v : values) sum += std::abs(1 - v / mean);
   return sum / static_cast<double>(values.size());
+}
+
+double first_number(std::span<const double> values) {
+  const auto found =
+      std::find_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
+  return found != values.end() ? *found : std::nan("");
+}
+
+double smallest(std::span<const double> values) {
+  double low = first_number(values);
+  for (const double v : values)
+    if (v < low) low = v;
+  return low;
+}
+
+double largest(std::span<const double> values) {
+  double high = first_number(values);
+  for (const double v : values)
+    if (v > high) high = v;
+  return high;
 }
 
 std::optional<double> growth_rate(std::span<const double> times, std::span<const double> values) {
@@ -87,13 +120,17 @@ std::optional<double> Record::statistic(std::size_t diagnostic, const std::strin
   const auto begin = values.begin() + skipped, stop = begin + count;
   if (name == "initial") return *begin;
   if (name == "final") return end;
-  if (name == "min") return *std::min_element(begin, stop);
-  if (name == "max") return *std::max_element(begin, stop);
+  if (name == "min") return smallest({begin, stop});
+  if (name == "max") return largest({begin, stop});
+  if (name == "first_value") {
+    const double first_value = first_number({begin, stop});
+    return std::isnan(first_value) ? std::nullopt : std::optional(first_value);
+  }
   if (name == "mean") return mean_of({begin, stop});
   if (name == "mean_deviation") return mean_deviation({begin, stop});
   if (name == "relative_change")  // nothing that stays nothing has not changed
     return end == *begin ? 0.0 : (end - *begin) / std::abs(*begin);
-  if (name == "relative_rise") return (*std::max_element(begin, stop) - *begin) / std::abs(*begin);
+  if (name == "relative_rise") return (largest({begin, stop}) - *begin) / std::abs(*begin);
   if (name == "growth_rate") {
     const auto at = static_cast<std::size_t>(skipped), n = static_cast<std::size_t>(count);
     return growth_rate(std::span(times_).subspan(at, n), std::span(values).subspan(at, n));

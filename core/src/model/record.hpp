@@ -30,7 +30,8 @@ class Record {
   /// first record above zero); nothing for an unknown word or when there is no such record;
   /// growth_rate: slope of the straight line through the logarithms of the magnitudes (s⁻¹),
   /// nothing for fewer than three records or a zero among them; mean_deviation: the mean of
-  /// |1 − v/⟨v⟩|. `time` replaces the end of the run, `from` its beginning.
+  /// |1 − v/⟨v⟩|; first_value: of the first record that is a number. Extrema and means are over the
+  /// records that are numbers. `time` replaces the end of the run, `from` its beginning.
   std::optional<double> statistic(std::size_t diagnostic, const std::string& name,
                                   std::optional<double> time,
                                   std::optional<double> from = {}) const;

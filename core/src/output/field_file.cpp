@@ -5,6 +5,14 @@
 #include "output/xdmf.hpp"
 
 namespace pileus::output {
+namespace {
+
+/// Both ends of every record's interval, as CF wants them (7.1): units are those of time.
+VariableSet interval_bounds() {
+  return {{{{"nv", "", "start and end of an interval"}, {0, 1}}}, {{time_bounds_name, "", ""}}};
+}
+
+}  // namespace
 
 FieldFile::FieldFile(std::filesystem::path path, std::vector<Axis> axes,
                      std::vector<Variable> variables, Provenance provenance, Encoding encoding,
@@ -27,9 +35,10 @@ void FieldFile::write_sidecar() const {
 }
 
 ProfileFile::ProfileFile(std::filesystem::path path, Axis height, std::vector<Variable> variables,
-                         Provenance provenance, Start start)
-    : RecordFile(std::move(path), {{std::move(height)}, std::move(variables)}, {},
-                 std::move(provenance), Encoding{.exact = true}, start) {}
+                         Provenance provenance, Start start, bool intervals)
+    : RecordFile(std::move(path), {{std::move(height)}, std::move(variables)},
+                 intervals ? interval_bounds() : VariableSet{}, std::move(provenance),
+                 Encoding{.exact = true}, start) {}
 
 SeriesFile::SeriesFile(std::filesystem::path path, std::vector<Variable> variables,
                        Provenance provenance, Start start)

@@ -26,11 +26,12 @@ class FieldFile {
   RecordFile records_;
 };
 
-/// Horizontal means and the like over (time, z), exact.
+/// Horizontal means and the like over (time, z), exact. With `intervals` every record is of an
+/// interval of time: after the variables' values, append() takes its start and its end (s).
 class ProfileFile : public RecordFile {
  public:
   ProfileFile(std::filesystem::path path, Axis height, std::vector<Variable> variables,
-              Provenance provenance, Start start);
+              Provenance provenance, Start start, bool intervals = false);
 };
 
 /// Named numbers over time, exact.

@@ -68,6 +68,8 @@ void write_cf_attributes(const Session& session, hid_t dataset, const Variable& 
   if (!variable.long_name.empty())
     hdf5::write_attribute(session, dataset, "long_name", variable.long_name);
   if (!variable.units.empty()) hdf5::write_attribute(session, dataset, "units", variable.units);
+  if (!variable.cell_methods.empty())
+    hdf5::write_attribute(session, dataset, "cell_methods", variable.cell_methods);
 }
 
 Id create_unlimited(const Session& session, hid_t group, const std::string& name, hid_t type,

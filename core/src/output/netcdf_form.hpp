@@ -17,7 +17,7 @@ namespace pileus::output {
 /// A variable and its CF attributes. `standard_name` stays empty unless the name is in the CF
 /// standard name table.
 struct Variable {
-  std::string name, units, long_name, standard_name{};
+  std::string name, units, long_name, standard_name{}, cell_methods{};
 };
 
 /// A fixed coordinate axis.
@@ -46,6 +46,9 @@ struct Encoding {
   hid_t file_type() const { return exact ? H5T_IEEE_F64LE : H5T_IEEE_F32LE; }
   hid_t memory_type() const { return exact ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT; }
 };
+
+/// The variable that holds the intervals of records; time refers to it where it exists.
+inline constexpr const char* time_bounds_name = "time_bnds";
 
 /// Real times decode to dates in xarray with this epoch; CF demands one.
 inline constexpr const char* time_units = "seconds since 2000-01-01 00:00:00";

@@ -95,8 +95,11 @@ void RecordFile::create(const Session& session) const {
     const VariableShape over_axes = shape(set, scales);
     Encoding encoding = encoding_;
     if (set.record_size() * encoding.value_bytes() < small_record_bytes) encoding.compress = false;
-    for (const Variable& variable : set.variables)
+    for (const Variable& variable : set.variables) {
       create_variable(session, session.file(), variable, encoding, over_axes);
+      if (variable.name == time_bounds_name)
+        hdf5::write_attribute(session, time, "bounds", time_bounds_name);
+    }
   }
 }
 

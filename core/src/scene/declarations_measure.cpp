@@ -197,6 +197,85 @@ const Table& variance_budget_table() {
   return table;
 }
 
+void check_slab_value(Reader& reader, const Node& node, void* object) {
+  auto& control = *static_cast<SlabValueControl*>(object);
+  control.where = node.where;
+  const bool at_height = control.measure == SlabValueControl::Measure::value;
+  if (at_height && node.find("height") == nullptr)
+    reader.problems().add(
+        node.where, fmt::format("the slab value '{}' needs a 'height'; the other measures than "
+                                "'value' take 'between: [lower, upper]'",
+                                control.name));
+  if (at_height != (node.find("between") == nullptr) && node.find("between") != nullptr)
+    reader.problems().add(node.where,
+                          fmt::format("the slab value '{}' is taken at one height: it has no "
+                                      "'between'",
+                                      control.name));
+  if (!at_height && node.find("height") != nullptr)
+    reader.problems().add(node.where, fmt::format("the slab value '{}' is of a range of heights: "
+                                                  "give 'between: [lower, upper]'",
+                                                  control.name));
+  if (control.between.size() == 2 && !(control.between[0] < control.between[1]))
+    reader.problems().add(node.where,
+                          fmt::format("the slab value '{}' needs the lower height first, found {} "
+                                      "and {}",
+                                      control.name, with_units(control.between[0], "m"),
+                                      with_units(control.between[1], "m")));
+}
+
+const Table& slab_value_table() {
+  static const Table table = {
+      .path = "diagnostics.slabs.values",
+      .doc = "Numbers of profiles over height, each a diagnostic of its own name.",
+      .keys = {value("name", &SlabValueControl::name, "1", "Name of the diagnostic.").must(),
+               value("variable", &SlabValueControl::variable, "1",
+                     "Statistic of slabs, such as core_mass_flux or z_velocity_variance.")
+                   .must(),
+               choice("measure", &SlabValueControl::measure,
+                      {"value", "mean", "min", "max", "height_of_max", "slope", "nonlinearity"},
+                      "The value at one height, linear between levels; a mean, an extremum or its "
+                      "height over levels; the slope of the least-squares line, or the largest "
+                      "deviation from that line over the line's largest magnitude."),
+               value("height", &SlabValueControl::height, "m",
+                     "Height at which the value is taken.")
+                   .otherwise("none"),
+               value("between", &SlabValueControl::between, "m",
+                     "Heights [lower, upper] between which levels count.")
+                   .counted(Count::two)
+                   .otherwise("the whole column"),
+               value(
+                   "averaged_from", &SlabValueControl::averaged_from, "s",
+                   "Take the mean profile over all records of the series from this simulated time "
+                   "on; before it there is no value.")
+                   .at_least(0)
+                   .otherwise("the profile of the moment")},
+      .other = {},
+      .finish = check_slab_value,
+      .write_other = {},
+      .amend_schema = {}};
+  return table;
+}
+
+const Table& slabs_table() {
+  static const Table table = {
+      .path = "diagnostics.slabs",
+      .doc =
+          "Statistics of horizontal slabs: means, variances, fluxes, clouds and cores over height "
+          "in profiles.nc, inversion and entrainment over time. The section switches them on.",
+      .keys = {sections("values", &SlabControl::values, slab_value_table())},
+      .other = {},
+      .finish = [](Reader&, const Node&,
+                   void* object) { static_cast<SlabControl*>(object)->wanted = true; },
+      .write_other = [](const void* object) -> Json {
+        const auto& control = *static_cast<const SlabControl*>(object);
+        // Even a section without keys says something.
+        if (!control.wanted || !control.values.empty()) return Json::object();
+        return Json{{"values", Json::array()}};
+      },
+      .amend_schema = {}};
+  return table;
+}
+
 }  // namespace
 
 const Table& water_path_table() {
@@ -258,7 +337,8 @@ const Table& diagnostics_table() {
                sections("mirrors", &DiagnosticControl::mirrors, mirror_table()),
                sections("histograms", &DiagnosticControl::histograms, histogram_table()),
                sections("variance_budgets", &DiagnosticControl::variance_budgets,
-                        variance_budget_table())},
+                        variance_budget_table()),
+               section("slabs", &DiagnosticControl::slabs, slabs_table())},
       .other = {},
       .finish = {},
       .write_other = {},

@@ -376,8 +376,16 @@ const Table& output_table() {
   static const Table fields =
       stream_table("fields", "Gridded fields.", "a twentieth of the simulated time");
   static const Table parcels = stream_table("parcels", "All parcels.", "half the simulated time");
-  static const Table profiles =
-      stream_table("profiles", "Horizontal means by height.", "a hundredth of the simulated time");
+  static const Table profiles = [] {
+    Table table = stream_table("profiles", "Horizontal means by height.",
+                               "a hundredth of the simulated time");
+    table.keys.push_back(value("sample", &OutputStream::sample, "s",
+                               "Simulated time between samples; a record is the mean of the "
+                               "samples since the one before.")
+                             .above(0)
+                             .otherwise("a record is of one moment"));
+    return table;
+  }();
   static const Table series = stream_table("series", "Domain integrals and extrema over time.",
                                            "a two-hundredth of the simulated time");
   static const Table table = {
@@ -419,11 +427,20 @@ const Table& expectation_table() {
                  "Which number of its series: the value at the start or end, an "
                  "extremum or mean over the run, final over initial minus one, max over initial "
                  "minus one, the rate at which the logarithm of its magnitude grows (s-1, least "
-                 "squares), or the mean of |1 - value/mean|.");
+                 "squares), the mean of |1 - value/mean|, the first value that is a number, or the "
+                 "time of the first above zero.");
              key.type = KeyType::custom;
-             key.choices = {"initial",       "final",       "min",
-                            "max",           "mean",        "relative_change",
-                            "relative_rise", "growth_rate", "mean_deviation"};
+             key.choices = {"initial",
+                            "final",
+                            "min",
+                            "max",
+                            "mean",
+                            "relative_change",
+                            "relative_rise",
+                            "growth_rate",
+                            "mean_deviation",
+                            "first_value",
+                            "first_time_above"};
              key.default_doc = "final";
              key.read = [choices = key.choices](Reader& reader, const Entry& entry, void* object) {
                Key words;

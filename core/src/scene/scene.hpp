@@ -181,6 +181,7 @@ struct EffectRequests {
 struct OutputStream {
   double every = -1;                   // s; 0: off (−1 only while reading: take the default)
   std::vector<std::string> variables;  // empty: the stream's default list
+  std::optional<double> sample;        // s, of profiles: records are means over such samples
 };
 
 /// Size spectra of the droplets, on bins of equal width in ln r.
@@ -291,6 +292,23 @@ struct WaterPathControl {
   std::optional<double> bottom, top;  // m; the domain's without
 };
 
+/// A number of a profile of slab statistics, as a diagnostic of its own: `name`.
+struct SlabValueControl {
+  enum class Measure { value, mean, min, max, height_of_max, slope, nonlinearity };
+  std::string name, variable;
+  Measure measure = Measure::value;
+  std::optional<double> height;         // m, for value
+  std::vector<double> between;          // m, two heights; empty: the whole column
+  std::optional<double> averaged_from;  // s; the mean over the series' records since then
+  Location where;
+};
+
+/// Statistics of horizontal slabs; none are taken where the scene does not have the section.
+struct SlabControl {
+  bool wanted = false;
+  std::vector<SlabValueControl> values;
+};
+
 struct DiagnosticControl {
   double cloud_threshold = 1e-6;  // 1; liquid water mass fraction from which air counts as cloudy
   WaterPathControl water_path;
@@ -300,6 +318,7 @@ struct DiagnosticControl {
   std::vector<MirrorControl> mirrors;
   std::vector<HistogramControl> histograms;
   std::vector<VarianceBudgetControl> variance_budgets;
+  SlabControl slabs;
 };
 
 struct Expectation {

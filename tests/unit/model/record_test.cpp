@@ -31,6 +31,23 @@ TEST(Record, StatisticsOfTheWholeRun) {
   EXPECT_FALSE(record.statistic(0, "median", {}).has_value());
 }
 
+/// A cloud base before and after the cloud, and of a run without one.
+TEST(Record, WhatIsNotANumberDoesNotCount) {
+  const double none = std::nan("");
+  Record record({{"cloud_base_height", "m", "", false}, {"never", "m", "", false}});
+  for (const double value : {none, 650.0, none, 550.0, 600.0, none})
+    record.append(10.0 * static_cast<double>(record.size()), {value, none});
+  EXPECT_EQ(record.statistic(0, "min", {}), 550);
+  EXPECT_EQ(record.statistic(0, "max", {}), 650);
+  EXPECT_EQ(record.statistic(0, "mean", {}), 600);
+  EXPECT_EQ(record.statistic(0, "first_value", {}), 650);
+  EXPECT_EQ(record.statistic(0, "first_value", {}, 20.0), 550);
+  EXPECT_EQ(record.statistic(0, "min", 20.0), 650);
+  EXPECT_TRUE(std::isnan(*record.statistic(0, "final", {})));
+  EXPECT_TRUE(std::isnan(*record.statistic(1, "mean", {})));
+  EXPECT_FALSE(record.statistic(1, "first_value", {}).has_value());
+}
+
 TEST(Record, AnEarlierTimeIsInterpolatedAndEndsTheStatistics) {
   const Record record = sample();
   EXPECT_EQ(record.statistic(0, "final", 20.0), 2.0);
