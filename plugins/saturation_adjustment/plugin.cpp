@@ -78,12 +78,12 @@ class SaturationAdjustment : public Operator<SaturationAdjustment> {
   void describe_quantities(Declaration& d) {
     height_ = d.reads("height", "m").doc("of the parcel's centre");
     buoyancy_l_ = d.reads("liquid_water_buoyancy", "m s-2")
-                      .intensive()
+                      .intensive("buoyancy")
                       .range(-1e4, 1e4)
                       .when(ideal)
                       .doc("buoyancy of the parcel with all its liquid evaporated");
     theta_l_ = d.reads("liquid_water_potential_temperature", "K")
-                   .intensive()
+                   .intensive("heat")
                    .range(coldest_theta, 2000.0)
                    .when(real)
                    .doc("potential temperature with all liquid evaporated");

@@ -1,5 +1,5 @@
 """What no run may change, whatever the scene."""
-from program import MIXING_THERMAL, THERMAL, WAVE, WARM_BUBBLE_2D, ProgramTest
+from program import HEATED_GROUND, MIXING_THERMAL, THERMAL, WAVE, WARM_BUBBLE_2D, ProgramTest
 
 # Means over n parcels round by at most n times the unit round-off, here 14 000 times 1.1e-16; the
 # means of pairwise merges and halvings add less.
@@ -30,6 +30,15 @@ class Conservation(ProgramTest):
             self.assert_mean_kept(ended, name)
         for quantity in CARRIED:
             self.assert_never_widened(ended, quantity)
+
+    def test_ground(self):
+        """Flux times time over the height, through splits and mergers; to 1e-10 of what came."""
+        ended = self.run_well(HEATED_GROUND)
+        self.assertNotEqual(ended.summary["parcels"]["initial"], ended.summary["parcels"]["final"])
+        for name, came in (("liquid_water_potential_temperature", 0.3 * 600 / 800),
+                           ("total_water_mass_fraction", 1e-4 * 600 / 800)):
+            mean = ended.diagnostic(f"mean_{name}")
+            self.assertAlmostEqual((mean["final"] - mean["initial"]) / came, 1, delta=1e-10)
 
     def test_mixing(self):
         """Nudging, exchange, displaced, stretched and growing parcels: amounts and extrema as

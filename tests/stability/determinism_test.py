@@ -1,5 +1,5 @@
 """The same bits for any number of threads, and for every instruction set in itself."""
-from program import CONFIGS, MIXING_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
+from program import CONFIGS, HEATED_GROUND, MIXING_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
 from records import differences, parcel_records
 
 # Coarse, and long enough for what can depend on threads to happen: the thermal splits and merges.
@@ -51,6 +51,9 @@ class Determinism(ProgramTest):
     def test_mixing_in_halves_on_any_threads(self):
         self.assert_same_on_any_threads(
             MIXING_THERMAL, COARSE_MIXING_THERMAL | {"coupling.scheme": "strang"})
+
+    def test_ground_on_any_threads(self):
+        self.assert_same_on_any_threads(HEATED_GROUND, {"time.end": "200 s"})
 
     def test_mixing_of_strength_zero_changes_no_bit(self):
         """Nor does an operator that reads the mesh leave a trace in what the core keeps there."""

@@ -19,6 +19,7 @@ WAVE = CONFIGS / "internal_wave" / "internal_wave_small.yaml"
 THERMAL = CONFIGS / "moist_thermal" / "moist_thermal_small.yaml"
 RELAXING_THERMAL = SCENES / "relaxing_thermal.yaml"
 MIXING_THERMAL = SCENES / "mixing_thermal.yaml"
+HEATED_GROUND = SCENES / "heated_ground.yaml"
 WARM_BUBBLE_2D = SCENES / "warm_bubble_2d.yaml"
 
 # Exit codes, as `pileus --help` promises them.

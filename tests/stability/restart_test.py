@@ -3,7 +3,8 @@ import random
 import signal
 import time
 
-from program import DONE, ENDS_AT_WRITE, MIXING_THERMAL, RELAXING_THERMAL, THERMAL, WAVE, ProgramTest
+from program import (DONE, ENDS_AT_WRITE, HEATED_GROUND, MIXING_THERMAL, RELAXING_THERMAL, THERMAL,
+                     WAVE, ProgramTest)
 from records import differences
 
 # A checkpoint every third step and a record of every stream in most steps: a large share of the
@@ -123,6 +124,14 @@ class Restart(ProgramTest):
         whole, took = self.timed(MIXING_THERMAL, values)
         resumed, _ = self.kill_and_resume(MIXING_THERMAL, values, self.random_moments(13, took))
         self.assert_equal_runs(resumed, whole)
+
+    def test_ground_is_resumed(self):
+        """What it owes, its maps and the step that its last fluxes ask for are in the checkpoint."""
+        whole = self.run_well(HEATED_GROUND, "whole")
+        self.run_scene(HEATED_GROUND, "stopped", {"time.max_steps": 20})
+        resumed = self.run_well(HEATED_GROUND, "stopped", options=RESUME)
+        for what in ("steps", "state_sha256"):
+            self.assertEqual(resumed.summary[what], whole.summary[what])
 
     def test_limit_of_an_operator_is_remembered(self):
         """The step that an operator asked for before the run was interrupted still holds after."""

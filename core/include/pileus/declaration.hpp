@@ -49,6 +49,8 @@ class Declaration {
       row_.nature = PILEUS_INTENSIVE, row_.weight = multiplicity, row_.budget = budget;
       return *this;
     }
+    /// Part of a budget, of the nature that its owner gives it, where it is not derived.
+    Quantity& counts_in(const char* budget) { return row_.budget = budget, *this; }
     Quantity& label() { return row_.nature = PILEUS_LABEL, *this; }
     /// Not called for: exists (Block::has) if another operator or the scene brings it about; one
     /// that is updated exists only where parcels carry it, not where it is derived.

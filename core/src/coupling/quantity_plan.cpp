@@ -332,7 +332,11 @@ class Planner {
                                       [](const Claim& claim) { return !claim.optional(); });
     if (needing != claims.end()) check_source(name, *needing, owner);
     parcels::Scalar scalar = passive(name);
-    if (decisive == nullptr) return scalar;
+    if (decisive == nullptr) {  // the core's own nature; whoever changes it may keep a budget
+      for (const Claim& claim : claims)
+        if (claim.row->budget != nullptr) scalar.budget = claim.row->budget;
+      return scalar;
+    }
     const pileus_quantity& row = *decisive->row;
     for (const Claim& claim : claims) check_agreement(name, *decisive, claim);
     scalar.nature = nature_of(row.nature);

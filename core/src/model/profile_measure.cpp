@@ -96,14 +96,17 @@ double measure(const Profile& profile, ProfileMeasure what, double low, double h
   const Points points = points_between(profile, low, high);
   const std::vector<double>& values = points.value;
   if (values.empty()) return nan;
+  const auto smallest = std::min_element(values.begin(), values.end());
   const auto largest = std::max_element(values.begin(), values.end());
   switch (what) {
     case ProfileMeasure::mean:
       return mean_of(values);
     case ProfileMeasure::min:
-      return *std::min_element(values.begin(), values.end());
+      return *smallest;
     case ProfileMeasure::max:
       return *largest;
+    case ProfileMeasure::height_of_min:
+      return points.height[static_cast<std::size_t>(smallest - values.begin())];
     case ProfileMeasure::height_of_max:
       return points.height[static_cast<std::size_t>(largest - values.begin())];
     case ProfileMeasure::slope:

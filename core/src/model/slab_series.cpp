@@ -28,14 +28,15 @@ int heat_profile(const SlabStatistics& slabs) {
 
 /// Unit of a measure of a profile in `units`.
 std::string units_of(ProfileMeasure measure, const std::string& units) {
-  if (measure == ProfileMeasure::height_of_max) return "m";
+  if (measure == ProfileMeasure::height_of_min || measure == ProfileMeasure::height_of_max)
+    return "m";
   if (measure == ProfileMeasure::nonlinearity) return "1";
   return measure == ProfileMeasure::slope ? product_of_units(units, "m-1") : units;
 }
 
 const std::vector<std::string>& measure_words() {
-  static const std::vector<std::string> words = {"value",         "mean",  "min",         "max",
-                                                 "height_of_max", "slope", "nonlinearity"};
+  static const std::vector<std::string> words = {
+      "value", "mean", "min", "max", "height_of_min", "height_of_max", "slope", "nonlinearity"};
   return words;
 }
 

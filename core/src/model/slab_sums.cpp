@@ -17,6 +17,15 @@ std::size_t part_length(std::size_t parcels) {
   return std::max(shortest_part, (needed + 7) / 8 * 8);
 }
 
+/// Without overlap, which lets several sums be formed at once.
+void add_terms(const double* __restrict terms, std::size_t count, double below, double above,
+               double* __restrict low, double* __restrict high) {
+  for (std::size_t i = 0; i < count; ++i) {
+    low[i] += below * terms[i];
+    high[i] += above * terms[i];
+  }
+}
+
 /// The levels around a parcel and its weights there.
 struct Place {
   std::size_t level;
@@ -110,19 +119,18 @@ void SlabSums::add_second(const SlabState& state, std::size_t begin, std::size_t
       return state.variables[v][p] - (place.below * mean_low[v] + place.above * mean_high[v]);
     };
     const double w = deviation(layout_.vertical);
+    // In the order of the layout: means, variances, fluxes, the third moment.
+    double *deviations = terms.data(), *squares = deviations + n, *products = squares + n;
+    for (std::size_t v = 0; v < n; ++v) deviations[v] = deviation(v);
     for (std::size_t v = 0; v < n; ++v) {
-      const double phi = deviation(v);
-      terms[layout_.mean(v)] = phi;
-      terms[layout_.variance(v)] = phi * phi;
-      terms[layout_.flux(v)] = w * phi;
+      squares[v] = deviations[v] * deviations[v];
+      products[v] = w * deviations[v];
     }
-    terms[layout_.third()] = w * w * w;
-    double *low = rows + place.level * columns, *high = low + columns;
+    products[n] = w * w * w;
+    double* low = rows + place.level * columns;
     const auto add = [&](std::size_t first, std::size_t last) {
-      for (std::size_t m = first; m < last; ++m) {
-        low[m] += below * terms[m];
-        high[m] += above * terms[m];
-      }
+      add_terms(terms.data() + first, last - first, below, above, low + first,
+                low + columns + first);
     };
     add(0, layout_.third() + 1);
     if (!layout_.has_sets || !(state.liquid[p] > state.cloud_threshold)) continue;

@@ -232,7 +232,8 @@ const Table& slab_value_table() {
                      "Statistic of slabs, such as core_mass_flux or z_velocity_variance.")
                    .must(),
                choice("measure", &SlabValueControl::measure,
-                      {"value", "mean", "min", "max", "height_of_max", "slope", "nonlinearity"},
+                      {"value", "mean", "min", "max", "height_of_min", "height_of_max", "slope",
+                       "nonlinearity"},
                       "The value at one height, linear between levels; a mean, an extremum or its "
                       "height over levels; the slope of the least-squares line, or the largest "
                       "deviation from that line over the line's largest magnitude."),

@@ -31,6 +31,14 @@ const Subject subjects[] = {
     {"org.pileus.stochastic_stretching", {{"coefficient", "2"}}, {}},
     {"org.pileus.coherent_displacement", {{"smagorinsky", "1"}}, {}},
     {"org.pileus.dilution", {}, {}},
+    {"org.pileus.large_scale_forcing",
+     {{"subsidence_velocity", "{height: [0 m, 4 m], value: [0 m/s, -1 m/s]}"},
+      {"subsidence_of", "scalars_and_wind"},
+      {"wind_nudging_time", "1 s"},
+      {"total_water_tendency", "-1e-3 s-1"},
+      {"sponge_rate", "1 s-1"},
+      {"sponge_of", "vorticity_and_scalars"}},
+     {"passive_tracer", "total_water_mass_fraction"}},
 };
 
 class BrokenState : public ::testing::TestWithParam<Subject> {};

@@ -36,6 +36,7 @@ TEST(ProfileMeasure, ValuesAndExtrema) {
   EXPECT_EQ(measure(profile, Measure::min, 10, 40), 2);
   EXPECT_EQ(measure(profile, Measure::max, 0, 30), 3);
   EXPECT_EQ(measure(profile, Measure::height_of_max, 0, 30), 10);
+  EXPECT_EQ(measure(profile, Measure::height_of_min, 10, 40), 20);
   EXPECT_TRUE(std::isnan(measure(profile, Measure::mean, 30, 30)));
   EXPECT_TRUE(std::isnan(measure(profile, Measure::value, 25, 25)));
 }
