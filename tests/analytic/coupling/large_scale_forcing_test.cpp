@@ -58,8 +58,8 @@ const Settings trade_wind = {
     {"total_water_tendency", "{height: [300 m, 500 m], value: [-1.2e-8 s-1, 0 s-1]}"}};
 
 /// Siebesma et al. 2003: of the column, K m s⁻¹ and m s⁻¹, subsidence 3.882e-2 and −5.043e-5,
-/// cooling to zero at 2500 m −4.630e-2, drying −4.8e-6. Levels smooth the kinks of the profiles: on
-/// 100 m subsidence comes out 0.5 % weaker, on 33 m 0.1 %.
+/// cooling to zero at 2500 m −4.630e-2, drying −4.8e-6. Kinks between
+/// levels are not resolved: on levels of 100 m subsidence comes out 0.1 % weaker.
 TEST(LargeScaleForcing, brings_the_column_budgets_of_trade_wind_cumulus) {
   for (const int cells : {30, 90}) {
     MeshRun<3> run(mesh::Grid<3>({2, 2, cells}, {0, 0, 0}, {400, 200, 3000}), forcing, trade_wind,
