@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/nearest_word.hpp"
 #include "base/version.hpp"
+#include "host/breadcrumb.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -99,6 +100,7 @@ int run(int argc, char** argv) {
   add_plan(app, action);
   add_check(app, action);
   add_study(app, action);
+  add_sweep(app, action);
   add_report(app, action);
   add_plugins(app, action);
   add_inspect(app, action);
@@ -134,6 +136,7 @@ int fail(int code, const std::string& message) {
 
 int main(int argc, char** argv) {
   using pileus::ExitCode;
+  pileus::host::install_crash_handler();  // so that a plugin that crashes is named
   try {
     return pileus::cli::run(argc, argv);
   } catch (const pileus::Error& error) {

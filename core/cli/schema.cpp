@@ -1,4 +1,4 @@
-// pileus schema: the JSON Schemas of scenes and studies, for editors.
+// pileus schema: the JSON Schemas of scenes, studies and sweeps, for editors.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -9,6 +9,7 @@
 #include "host/search.hpp"
 #include "study/declarations.hpp"
 #include "study/study_file.hpp"
+#include "study/sweep_file.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -23,7 +24,9 @@ struct SchemaRequest {
 
 ExitCode show(const SchemaRequest& request) {
   std::string text = request.kind == "study" ? study::study_schema()
-                                             : study::scene_schema(host::default_search_path("."));
+                     : request.kind == "sweep"
+                         ? study::sweep_schema()
+                         : study::scene_schema(host::default_search_path("."));
   if (request.as_reference) text = study::key_reference(request.kind, text);
   if (request.path.empty()) {
     std::cout << text;
@@ -40,12 +43,12 @@ ExitCode show(const SchemaRequest& request) {
 }  // namespace
 
 void add_schema(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "schema",
-      "Print the JSON Schema of scenes, with the plugins found, or of studies, for editors");
+  CLI::App* verb = app.add_subcommand("schema",
+                                      "Print the JSON Schema of scenes, with the plugins found, or "
+                                      "of studies or sweeps, for editors");
   auto request = std::make_shared<SchemaRequest>();
-  verb->add_option("kind", request->kind, "scene or study; default: scene")
-      ->check(CLI::IsMember({"scene", "study"}))
+  verb->add_option("kind", request->kind, "scene, study or sweep; default: scene")
+      ->check(CLI::IsMember({"scene", "study", "sweep"}))
       ->type_name("KIND");
   verb->add_flag("--reference", request->as_reference, "As a page of Markdown for reading");
   verb->add_option("--write", request->path, "Write to this file instead")->type_name("FILE");

@@ -47,13 +47,13 @@ void Id::reset() {
 
 // --- session -------------------------------------------------------------------------------------
 
-Session::Session(const std::filesystem::path& path, StagedFile::Mode mode) {
+Session::Session(const std::filesystem::path& path, StagedFile::Mode mode, H5F_libver_t newest) {
   silence_error_printing();
   staged_ = std::make_unique<StagedFile>(path, mode);
   const Id access(check(H5Pcreate(H5P_FILE_ACCESS), "prepare"));
   check(set_staged_driver(access, *staged_), "prepare");
   // 1.8 is the oldest format with ordered links and checksummed headers, and every netCDF reads it.
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "prepare");
+  check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, newest), "prepare");
   check(H5Pset_file_locking(access, false, true), "prepare");
   check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), "prepare");
   if (mode == StagedFile::Mode::create) {
@@ -71,6 +71,9 @@ Session::Session(const std::filesystem::path& path, StagedFile::Mode mode) {
 
 Session Session::create(const std::filesystem::path& path) {
   return Session(path, StagedFile::Mode::create);
+}
+Session Session::create_with_references(const std::filesystem::path& path) {
+  return Session(path, StagedFile::Mode::create, H5F_LIBVER_V110);
 }
 Session Session::update(const std::filesystem::path& path) {
   return Session(path, StagedFile::Mode::update);

@@ -38,6 +38,9 @@ class Id {
 class Session {
  public:
   static Session create(const std::filesystem::path& path);
+  /// As `create`, for a file that may have virtual variables, which refer to those of other files:
+  /// HDF5 has them since 1.10.
+  static Session create_with_references(const std::filesystem::path& path);
   static Session update(const std::filesystem::path& path);
   static Session read(const std::filesystem::path& path);
   ~Session();
@@ -60,7 +63,8 @@ class Session {
   void stop_if_write_failed() const;
 
  private:
-  Session(const std::filesystem::path& path, StagedFile::Mode mode);
+  Session(const std::filesystem::path& path, StagedFile::Mode mode,
+          H5F_libver_t newest = H5F_LIBVER_V18);
   void finish(bool durable, bool sealed);
   std::unique_ptr<StagedFile> staged_;
   Id file_;

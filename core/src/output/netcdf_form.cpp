@@ -60,9 +60,7 @@ void write_provenance(const Session& session, hid_t group, const Provenance& pro
   hdf5::write_attribute(session, scene, "long_name", "scene with every default filled in (YAML)");
 }
 
-namespace {
-
-void write_cf_attributes(const Session& session, hid_t dataset, const Variable& variable) {
+void write_description(const Session& session, hid_t dataset, const Variable& variable) {
   if (!variable.standard_name.empty())
     hdf5::write_attribute(session, dataset, "standard_name", variable.standard_name);
   if (!variable.long_name.empty())
@@ -71,6 +69,15 @@ void write_cf_attributes(const Session& session, hid_t dataset, const Variable& 
   if (!variable.cell_methods.empty())
     hdf5::write_attribute(session, dataset, "cell_methods", variable.cell_methods);
 }
+
+Id variable_length_text(const Session& session) {
+  Id type(session.check(H5Tcopy(H5T_C_S1), "describe text"));
+  session.check(H5Tset_size(type, H5T_VARIABLE), "describe text");
+  session.check(H5Tset_cset(type, H5T_CSET_UTF8), "describe text");
+  return type;
+}
+
+namespace {
 
 Id create_unlimited(const Session& session, hid_t group, const std::string& name, hid_t type,
                     const std::string& scale_name) {
@@ -110,7 +117,7 @@ Id create_shaped(const Session& session, hid_t group, const Variable& variable, 
     session.check(H5DSattach_scale(dataset, shape.scales[static_cast<std::size_t>(axis)],
                                    static_cast<unsigned>(axis)),
                   operation);
-  write_cf_attributes(session, dataset, variable);
+  write_description(session, dataset, variable);
   return dataset;
 }
 
@@ -118,8 +125,8 @@ Id create_shaped(const Session& session, hid_t group, const Variable& variable, 
 
 Id create_time(const Session& session, hid_t group) {
   Id dataset = create_unlimited(session, group, "time", H5T_IEEE_F64LE, "time");
-  write_cf_attributes(session, dataset,
-                      {"time", time_units, "time since the start of the simulation", "time"});
+  write_description(session, dataset,
+                    {"time", time_units, "time since the start of the simulation", "time"});
   hdf5::write_attribute(session, dataset, "calendar", "standard");
   return dataset;
 }
@@ -130,7 +137,7 @@ Id create_axis(const Session& session, hid_t group, const Axis& axis) {
                     axis.values.size());
   Id dataset = hdf5::open_dataset(session, group, name);
   session.check(H5DSset_scale(dataset, name.c_str()), "create dimension " + name);
-  write_cf_attributes(session, dataset, axis.variable);
+  write_description(session, dataset, axis.variable);
   if (!axis.positive.empty()) hdf5::write_attribute(session, dataset, "positive", axis.positive);
   return dataset;
 }

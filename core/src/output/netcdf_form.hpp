@@ -64,6 +64,12 @@ const void* encode(std::span<const double> values, const Encoding& encoding,
 /// Global attributes (Conventions, title, source, history, seeds) and the variable `scene`.
 void write_provenance(const hdf5::Session& session, hid_t group, const Provenance& provenance);
 
+/// Type of texts of any length, for variables of words.
+hdf5::Id variable_length_text(const hdf5::Session& session);
+
+/// The CF attributes standard_name, long_name and units, those that are known.
+void write_description(const hdf5::Session& session, hid_t dataset, const Variable& variable);
+
 /// The unlimited coordinate `time`, empty.
 hdf5::Id create_time(const hdf5::Session& session, hid_t group);
 

@@ -7,17 +7,6 @@ namespace pileus::output {
 using hdf5::Id;
 using hdf5::Session;
 
-namespace {
-
-Id variable_length_text(const Session& session) {
-  Id type(session.check(H5Tcopy(H5T_C_S1), "describe text"));
-  session.check(H5Tset_size(type, H5T_VARIABLE), "describe text");
-  session.check(H5Tset_cset(type, H5T_CSET_UTF8), "describe text");
-  return type;
-}
-
-}  // namespace
-
 void write_table(const std::filesystem::path& path, const std::string& dimension, std::size_t rows,
                  const std::vector<NumberColumn>& numbers, const std::vector<WordColumn>& words,
                  const Provenance& provenance) {

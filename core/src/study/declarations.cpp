@@ -49,18 +49,25 @@ std::string row(const std::string& key, const Json& schema) {
   return fmt::format("| `{}` | {} |\n", key, cell(meaning));
 }
 
+/// What a key's list has in it, where that is a section; null otherwise.
+const Json* inner_section(const Json& value) {
+  if (is_section(value)) return &value;
+  return value.contains("items") && is_section(value.at("items")) ? &value.at("items") : nullptr;
+}
+
 /// A section's table, and below it the tables of the sections in it.
 void write_section(const std::string& path, const Json& schema, std::string& page) {
   page += fmt::format("\n## `{}`\n\n{}\n", path, schema.value("description", ""));
   std::string rows;
   std::vector<std::pair<std::string, const Json*>> inner;
   for (const auto& [key, value] : schema.at("properties").items()) {
-    if (is_section(value)) {
-      inner.emplace_back(path + "." + key, &value);
+    if (const Json* within = inner_section(value)) {
+      inner.emplace_back(path + "." + key, within);
       // Headings lose everything but letters, digits, _ and - in anchors.
       std::string anchor = path + key;
       std::erase(anchor, '.');
-      rows += fmt::format("| `{}` | A section: [{}.{}](#{}). |\n", key, path, key, anchor);
+      rows += fmt::format("| `{}` | A {}: [{}.{}](#{}). |\n", key,
+                          within == &value ? "section" : "list of sections", path, key, anchor);
     } else {
       rows += row(key, value);
     }

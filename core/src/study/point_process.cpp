@@ -92,7 +92,8 @@ int wait_for(pid_t process, const fs::path& folder, const Watcher& watcher) {
 }  // namespace
 
 ProcessResult run_process(const ProcessRequest& request, const Watcher& watcher) {
-  const fs::path log_path = request.folder.string() + ".log";
+  const fs::path log_path =
+      request.log.empty() ? fs::path(request.folder.string() + ".log") : request.log;
   const int log = open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (log < 0)
     throw Error(ExitCode::file,

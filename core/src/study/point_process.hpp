@@ -12,7 +12,8 @@ struct ProcessRequest {
   std::vector<std::string> overrides;  // key=value
   std::filesystem::path folder;        // of the results
   int threads = 1;
-  bool resume = false;  // from a checkpoint in the folder
+  bool resume = false;        // from a checkpoint in the folder
+  std::filesystem::path log;  // what it writes; empty: `<folder>.log`
 };
 
 struct ProcessResult {
@@ -24,8 +25,11 @@ struct ProcessResult {
 using Watcher = std::function<void(double share)>;
 
 /// Runs a scene with `pileus run` in a process of its own and waits. What it writes goes to
-/// `<folder>.log`. A stop that is requested meanwhile is passed on; the result is then what the
+/// its log. A stop that is requested meanwhile is passed on; the result is then what the
 /// process makes of it (75). Throws Error(file) when no process can be started.
 ProcessResult run_process(const ProcessRequest& request, const Watcher& watcher);
+
+/// How one run is made; run_process() outside tests.
+using PointRunner = std::function<ProcessResult(const ProcessRequest&, const Watcher&)>;
 
 }  // namespace pileus::study

@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "base/nearest_word.hpp"
 #include "base/sha256.hpp"
 #include "base/units.hpp"
 #include "base/version.hpp"
-#include "coupling/operator_entry.hpp"
-#include "host/search.hpp"
 #include "model/record.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/tree.hpp"
+#include "study/scene_settings.hpp"
 
 namespace pileus::study {
 
@@ -22,28 +20,13 @@ namespace {
 
 constexpr std::size_t most_points = 10000;
 
-scene::Setting setting(std::string key, const std::string& value, const scene::Location& where) {
-  scene::Setting setting{std::move(key), {}, where};
-  setting.value.kind = scene::Node::Kind::scalar;
-  setting.value.text = value;
-  setting.value.where = where;
-  return setting;
-}
-
-std::vector<coupling::OperatorEntry> operators_of(const scene::Scene& scene, const Study& study,
-                                                  scene::Problems& problems) {
-  return coupling::load_operators(
-      scene, host::default_search_path(std::filesystem::path(study.scene_path()).parent_path()),
-      problems);
-}
-
 /// The rungs an operator declares for a parameter; none when it is no knob.
 std::vector<Rung> declared_ladder(const pileus_parameter& parameter, const std::string& key,
                                   const scene::Location& where) {
   std::vector<Rung> ladder;
   for (const double* rung = parameter.ladder; rung != nullptr && !std::isnan(*rung); ++rung) {
     const std::string text = shortest(*rung);
-    ladder.push_back({text, *rung, {setting(key, text, where)}});
+    ladder.push_back({text, *rung, {text_setting(key, text, where)}});
   }
   return ladder;
 }
@@ -53,7 +36,7 @@ std::vector<Knob> complete_knobs(const Study& study, const scene::Scene& base,
                                  scene::Problems& problems) {
   std::vector<Knob> knobs = study.knobs;
   std::vector<std::string> declared;
-  const auto operators = operators_of(base, study, problems);
+  const auto operators = operators_of(base, study.scene_path(), problems);
   for (const coupling::OperatorEntry& entry : operators) {
     for (const pileus_parameter& parameter : entry.table->parameters) {
       if (parameter.knob == 0 || parameter.ladder == nullptr) continue;
@@ -164,16 +147,17 @@ void add_outputs(const Study& study, const scene::Scene& scene,
   for (const ErrorNorm& norm : study.errors)
     if (!norm.field.empty() && fields.find(norm.field) == std::string::npos)
       fields += (fields.empty() ? "" : ", ") + norm.field;
-  settings.push_back(setting("output.parcels.every", "0", where));
-  settings.push_back(setting("output.profiles.every", "0", where));
+  settings.push_back(text_setting("output.parcels.every", "0", where));
+  settings.push_back(text_setting("output.profiles.every", "0", where));
   settings.push_back(
-      setting("output.fields.every", fields.empty() ? "0" : shortest(scene.time.end), where));
+      text_setting("output.fields.every", fields.empty() ? "0" : shortest(scene.time.end), where));
   if (fields.empty()) return;
   scene::Setting variables{"output.fields.variables", {}, where};
   variables.value.kind = scene::Node::Kind::list;
   variables.value.where = where;
   for (const ErrorNorm& norm : study.errors)
-    if (!norm.field.empty()) variables.value.items.push_back(setting("", norm.field, where).value);
+    if (!norm.field.empty())
+      variables.value.items.push_back(text_setting("", norm.field, where).value);
   settings.push_back(std::move(variables));
 }
 
@@ -185,16 +169,15 @@ PlannedRun plan_run(const Study& study, const Point& point, std::optional<std::u
   settings.insert(settings.end(), point.settings.begin(), point.settings.end());
   if (seed)
     for (const std::string& key : study.seed_keys)
-      settings.push_back(setting(key, std::to_string(*seed), {study.path, 0, 0}));
+      settings.push_back(text_setting(key, std::to_string(*seed), {study.path, 0, 0}));
   const std::size_t before = problems.size();
   scene::Scene scene = scene::read_scene_with(study.scene_path(), settings, problems);
   if (problems.size() == before) {
     add_outputs(study, scene, settings);
     scene = scene::read_scene_with(study.scene_path(), settings, problems);
   }
-  if (problems.size() == before) operators_of(scene, study, problems);
-  for (const scene::Setting& one : settings)
-    run.overrides.push_back(one.key + "=" + scene::flow_text(one.value));
+  if (problems.size() == before) operators_of(scene, study.scene_path(), problems);
+  run.overrides = assignments(settings);
   run.resolved = scene.resolved_yaml;
   run.key = sha256_hex(run.resolved + std::string(build_record().version));
   return run;
@@ -203,10 +186,7 @@ PlannedRun plan_run(const Study& study, const Point& point, std::optional<std::u
 /// The same mistake shows up in every point that makes it.
 void add_new(const scene::Problems& found, scene::Problems& problems) {
   for (const scene::Problem& one : found.list()) {
-    const auto same = [&](const scene::Problem& other) {
-      return other.text == one.text && other.where.file == one.where.file &&
-             other.where.line == one.where.line && other.where.column == one.where.column;
-    };
+    const auto same = [&](const scene::Problem& other) { return is_same(one, other); };
     if (std::none_of(problems.list().begin(), problems.list().end(), same)) problems.add(one);
   }
 }

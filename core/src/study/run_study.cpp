@@ -138,7 +138,7 @@ class Runs {
   std::optional<bool> run_scene(const PlannedRun& run, const fs::path& folder,
                                 RunOutcome& outcome) {
     std::ofstream(folder.parent_path() / "scene.yaml") << run.resolved;
-    ProcessRequest request{study_.scene_path(), run.overrides, folder, study_.threads, false};
+    ProcessRequest request{study_.scene_path(), run.overrides, folder, study_.threads, false, {}};
     // Wall times by phase begin anew after a restart, processor times do not.
     request.resume = study_.cost != Cost::wall_time && !output::list_checkpoints(folder).empty();
     const ProcessResult result = run_(request, [this](double share) { progress_.update(share); });

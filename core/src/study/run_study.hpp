@@ -1,7 +1,6 @@
 // A study from its file to its table, files and pictures.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -30,9 +29,6 @@ struct StudyResult {
   /// done; numerical when a bound was missed; stopped.
   ExitCode code() const;
 };
-
-/// How one run is made; run_process() outside tests.
-using PointRunner = std::function<ProcessResult(const ProcessRequest&, const Watcher&)>;
 
 /// Runs what earlier calls have not finished, every run in a process of its own, then measures,
 /// judges and writes study.nc, study.csv, study.json and pictures to the study's folder and the

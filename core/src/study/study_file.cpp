@@ -8,6 +8,7 @@
 #include "base/nearest_word.hpp"
 #include "scene/reader.hpp"
 #include "scene/schema.hpp"
+#include "study/file_keys.hpp"
 #include "study/study_knobs.hpp"
 
 namespace pileus::study {
@@ -44,28 +45,6 @@ std::vector<std::string> knob_names(const Study& study) {
   std::vector<std::string> names;
   for (const Knob& knob : study.knobs) names.push_back(knob.name);
   return names;
-}
-
-/// A mapping from keys of the scene to values, as settings.
-scene::Key settings_key(const std::string& name, std::vector<scene::Setting> Study::*member,
-                        const std::string& doc) {
-  scene::Key key;
-  key.name = name;
-  key.type = scene::KeyType::custom;
-  key.doc = doc;
-  key.default_doc = "none";
-  key.read = [member, name](Reader& reader, const Entry& entry, void* object) {
-    auto& settings = static_cast<Study*>(object)->*member;
-    if (entry.value.kind != Node::Kind::mapping)
-      reader.problem(entry.value, fmt::format("'{}' is a mapping from keys of the scene to values "
-                                              "(time.end: 20 s), found {}",
-                                              name, describe(entry.value)));
-    for (const Entry& one : entry.value.entries)
-      settings.push_back({one.key, one.value, one.where});
-  };
-  key.write = [](const void*) -> scene::Json { return nullptr; };
-  key.schema = [] { return scene::Json{{"type", "object"}}; };
-  return key;
 }
 
 /// A mapping from names to numbers.
@@ -262,21 +241,10 @@ scene::Key seeds_key() {
       "their mean, with the lowest and highest as bars.";
   key.default_doc = "the scene's own";
   key.read = [](Reader& reader, const Entry& entry, void* object) {
-    if (entry.value.kind != Node::Kind::list)
-      return reader.problem(entry.value, fmt::format("'seeds' is a list of whole numbers, found {}",
-                                                     describe(entry.value)));
-    scene::Key seed;
-    seed.name = "seeds";
-    seed.range.low = 0;
-    std::int64_t value = 0;
-    for (const Node& item : entry.value.items)
-      if (reader.integer(item, seed, value))
-        static_cast<Study*>(object)->seeds.push_back(static_cast<std::uint64_t>(value));
+    read_seeds(reader, entry.value, static_cast<Study*>(object)->seeds);
   };
   key.write = [](const void*) -> scene::Json { return nullptr; };
-  key.schema = [] {
-    return scene::Json{{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}};
-  };
+  key.schema = [] { return list_of_seeds(); };
   return key;
 }
 
@@ -324,17 +292,9 @@ const scene::Table& study_table() {
   static const scene::Table table = [] {
     scene::Table study;
     study.doc = "A Pileus study: what accuracy costs in time.";
-    scene::Key extends =
-        scene::value("extends", &Study::path, "1",
-                     "Another study, relative to this one, that this one changes.");
-    extends.type = scene::KeyType::custom;
-    extends.default_doc = "none";
-    extends.read = [](Reader&, const Entry&, void*) {};  // done when the file was loaded
-    extends.write = [](const void*) -> scene::Json { return nullptr; };
-    extends.schema = [] { return scene::Json{{"type", "string"}}; };
     study.keys = {
         scene::section("study", identity_table()),
-        std::move(extends),
+        extends_key("study"),
         scene::choice("experiment", &Study::experiment, {"scene", "shape_integrators"},
                       "What is run: a scene, or ways to deform parcels in a given random strain."),
         scene::value("scene", &Study::scene, "1", "The base scene, relative to the study.")

@@ -17,6 +17,7 @@
 #include "output/table_file.hpp"
 #include "scene/tree.hpp"
 #include "study/outcome.hpp"
+#include "study/scene_settings.hpp"
 
 namespace pileus::study {
 
@@ -55,13 +56,6 @@ Spread error_of(const Findings& findings, const Row& row, std::size_t norm) {
   const auto error = row.published->errors.find(findings.study.errors[norm].name);
   if (error == row.published->errors.end()) return {};
   return {error->second, error->second, error->second};
-}
-
-/// Names of variables hold letters, digits and underscores.
-std::string identifier(const std::string& text) {
-  std::string name;
-  for (const char c : text) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return name;
 }
 
 std::vector<output::NumberColumn> number_columns(const Findings& findings) {
@@ -126,14 +120,6 @@ std::string quote(const std::string& text) {
 
 Json spread_json(const Spread& spread) {
   return {{"value", spread.value}, {"low", spread.low}, {"high", spread.high}};
-}
-
-/// "key=value", as `--set` takes them.
-std::vector<std::string> assignments(const std::vector<scene::Setting>& settings) {
-  std::vector<std::string> words;
-  for (const scene::Setting& setting : settings)
-    words.push_back(setting.key + "=" + scene::flow_text(setting.value));
-  return words;
 }
 
 Json point_json(const Findings& findings, const PointResult& point) {

@@ -7,6 +7,7 @@
 #include "base/units.hpp"
 #include "scene/reader.hpp"
 #include "scene/tree.hpp"
+#include "study/scene_settings.hpp"
 #include "study/study_file.hpp"
 
 namespace pileus::study {
@@ -25,13 +26,6 @@ double number_of(const Node& value) {
   if (!written) return not_a_number;
   return written->unit.empty() ? written->number
                                : to_si(written->number, written->unit).value_or(written->number);
-}
-
-std::string label_of(const Node& value) {
-  if (value.kind == Node::Kind::scalar) return value.text;
-  std::string text;
-  for (const Node& item : value.items) text += (text.empty() ? "" : " ") + label_of(item);
-  return text.empty() ? scene::flow_text(value) : text;
 }
 
 void add_rung(Reader& reader, Knob& knob, std::size_t index) {
@@ -69,10 +63,7 @@ void complete_knob(Reader& reader, const Node& node, void* object) {
     reader.problem(node,
                    "a knob needs the 'key' of the scene that it turns, such as "
                    "'time.step.alpha'");
-  if (knob.name.empty() && !knob.keys.empty()) {
-    const std::string& key = knob.keys.front();
-    knob.name = key.substr(key.rfind('.') == std::string::npos ? 0 : key.rfind('.') + 1);
-  }
+  if (knob.name.empty() && !knob.keys.empty()) knob.name = last_word(knob.keys.front());
   const Entry* values = node.find("values");
   if (values != nullptr && knob.values.empty())
     reader.problem(values->value, "a knob needs at least one value");
@@ -107,6 +98,13 @@ scene::Key values_key() {
 
 }  // namespace
 
+std::string label_of(const Node& value) {
+  if (value.kind == Node::Kind::scalar) return value.text;
+  std::string text;
+  for (const Node& item : value.items) text += (text.empty() ? "" : " ") + label_of(item);
+  return text.empty() ? scene::flow_text(value) : text;
+}
+
 const scene::Table& knob_table() {
   static const scene::Table table = {
       .path = "knobs",
@@ -127,6 +125,24 @@ const scene::Table& knob_table() {
       .finish = complete_knob,
       .write_other = {},
       .amend_schema = {}};
+  return table;
+}
+
+const scene::Table& product_table() {
+  static const scene::Table table = [] {
+    scene::Table product = knob_table();
+    product.path = "product";
+    product.doc = "What is varied in all combinations: keys of the scene with their values.";
+    std::erase_if(product.keys, [](const scene::Key& key) { return key.name == "axis"; });
+    for (scene::Key& key : product.keys) {
+      if (key.name == "name") key.doc = "Name in tables, files and pictures.";
+      if (key.name == "numbers") key.doc = "The number that stands for each value in files.";
+      if (key.name != "values") continue;
+      key.doc = "Values of the key; with 'keys', each is a list with one value per key.";
+      key.required = true;
+    }
+    return product;
+  }();
   return table;
 }
 
