@@ -4,9 +4,10 @@ import re
 import tree
 
 # Folder of core/src → the folders it may include. Derived from the arrows
-# study → model → {planner, coupling, output} → {dynamics, host, scene} → parcels → mesh → base.
+# {study, authoring} → model → {planner, coupling, output} → {dynamics, host, scene} → parcels → mesh →
+# base.
 LAYERS = [["base"], ["mesh"], ["parcels"], ["dynamics", "host", "scene"],
-          ["planner", "coupling", "output"], ["model"], ["study"]]
+          ["planner", "coupling", "output"], ["model"], ["study", "authoring"]]
 ALLOWED = {
     folder: {folder} | {f for lower in LAYERS[:level] for f in lower}
     for level, layer in enumerate(LAYERS) for folder in layer
@@ -30,7 +31,8 @@ HOMES = {
     "Eigen": {"mesh", "parcels", "dynamics"},
     "boost": {"dynamics", "parcels", "planner", "scene", "study"},
     "nlohmann": {"scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
-    "fmt": {"base", "scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
+    "fmt": {"base", "scene", "host", "planner", "coupling", "output", "model", "study",
+            "authoring", "cli"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 

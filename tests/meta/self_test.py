@@ -77,6 +77,8 @@ class Checks(unittest.TestCase):
     def test_unregistered_test(self):
         self.write("tests/unit/a.cpp")
         self.write("tests/unit/b.cpp")
+        self.write("tests/install/project/c.cpp")
+        self.write("tests/install/project/CMakeLists.txt", "project(c)\n")
         self.write("build/compile_commands.json",
                    json.dumps([{"directory": str(self.root), "file": "tests/unit/a.cpp"}]))
         found = repository.unregistered_tests(self.root, self.root / "build")

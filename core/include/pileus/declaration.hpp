@@ -51,6 +51,7 @@ class Declaration {
     }
     /// Part of a budget, of the nature that its owner gives it, where it is not derived.
     Quantity& counts_in(const char* budget) { return row_.budget = budget, *this; }
+    /// Of the larger parcel at a merge, copied at a split.
     Quantity& label() { return row_.nature = PILEUS_LABEL, *this; }
     /// Not called for: exists (Block::has) if another operator or the scene brings it about; one
     /// that is updated exists only where parcels carry it, not where it is derived.
@@ -58,11 +59,17 @@ class Declaration {
     /// Of one that is derived: left out within a step, where only the flow is advanced. Ask
     /// Block::has in `diagnose`.
     Quantity& on_demand() { return row_.access |= PILEUS_ON_DEMAND, *this; }
+    /// The value at the start where the scene states none.
     Quantity& initial(double value) { return row_.initial = value, *this; }
+    /// Numbers per element; more than one is reached with strided_in and strided_out.
     Quantity& components(std::uint32_t count) { return row_.components = count, *this; }
+    /// Where it lives, if not on parcels.
     Quantity& place(std::uint32_t where) { return row_.place = where, *this; }
+    /// Of an element, if not a double.
     Quantity& type(std::uint32_t element) { return row_.type = element, *this; }
+    /// Exists only where this holds: of parameters and effects, see pileus/abi.h.
     Quantity& when(const char* condition) { return row_.when = condition, *this; }
+    /// One line for people, beyond the register's definition.
     Quantity& doc(const char* text) { return row_.doc = text, *this; }
     operator Slot() const { return {index_}; }  // NOLINT: `slot = d.reads(…)` is the point
 
@@ -78,7 +85,9 @@ class Declaration {
     Parameter& range(double low, double high) { return row_.low = low, row_.high = high, *this; }
     /// Trades accuracy for time; `ladder` from coarse to fine, NaN-terminated, static.
     Parameter& knob(const double* ladder) { return row_.knob = 1, row_.ladder = ladder, *this; }
+    /// Means something only where this holds.
     Parameter& when(const char* condition) { return row_.when = condition, *this; }
+    /// One line for people.
     Parameter& doc(const char* text) { return row_.doc = text, *this; }
     operator Param() const { return {index_}; }  // NOLINT: `param = d.number(…)` is the point
 
@@ -149,12 +158,15 @@ class Declaration {
     return updates(name, units).place(PILEUS_ITEM);
   }
 
+  /// A number with a unit.
   Parameter number(const char* name, const char* units, double fallback) {
     return parameter(PILEUS_NUMBER, name, units, fallback);
   }
+  /// A whole number.
   Parameter integer(const char* name, std::int64_t fallback) {
     return parameter(PILEUS_INTEGER, name, "1", static_cast<double>(fallback));
   }
+  /// true or false in a scene.
   Parameter toggle(const char* name, bool fallback) {
     return parameter(PILEUS_SWITCH, name, "1", fallback ? 1.0 : 0.0);
   }
@@ -166,6 +178,7 @@ class Declaration {
     parameters_.items.back().choices = list.data();
     return made;
   }
+  /// Any text.
   Parameter text(const char* name, const char* fallback) {
     Parameter made = parameter(PILEUS_TEXT, name, "1", 0);
     parameters_.items.back().text_fallback = fallback;
@@ -185,12 +198,15 @@ class Declaration {
     return parameter(PILEUS_SERIES, name, units, fallback);
   }
 
+  /// An effect the operator brings about (in the cases of `when`).
   void provides(const char* effect, const char* when = nullptr) {
     add_effect(PILEUS_PROVIDES, effect, when);
   }
+  /// One it cannot do without.
   void requires_effect(const char* effect, const char* when = nullptr) {
     add_effect(PILEUS_REQUIRES, effect, when);
   }
+  /// One that must not be provided beside it.
   void excludes(const char* effect, const char* when = nullptr) {
     add_effect(PILEUS_EXCLUDES, effect, when);
   }
@@ -200,17 +216,25 @@ class Declaration {
     pileus_condition& row = conditions_.add();
     row.clause = clause, row.quantity = quantity, row.op = comparison, row.value = value;
   }
+  /// The same with the value of a parameter, by its name.
+  void active_if_parameter(std::uint32_t clause, const char* quantity, std::uint32_t comparison,
+                           const char* parameter) {
+    pileus_condition& row = conditions_.add();
+    row.clause = clause, row.quantity = quantity, row.op = comparison, row.parameter = parameter;
+  }
+  /// A source, by DOI and in words.
   void cites(const char* doi, const char* text) {
     pileus_reference& row = references_.add();
     row.doi = doi, row.text = text;
   }
+  /// A closed sum whose exchange with the outside is booked.
   Budget budget(const char* name) {
     budgets_.back() = name;
     budgets_.push_back(nullptr);
     return {static_cast<std::uint32_t>(budgets_.size() - 2)};
   }
 
-  /// Points the operator's lists at what was collected.
+  // Points the operator's lists at what was collected; the base class calls it.
   void seal() {
     op.size = sizeof op;
     op.quantities = quantities_.view.data();

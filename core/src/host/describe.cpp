@@ -11,7 +11,6 @@
 #include "host/enum_names.hpp"
 
 namespace pileus::host {
-namespace {
 
 std::string access_words(std::uint32_t access) {
   std::string text;
@@ -26,6 +25,8 @@ std::string access_words(std::uint32_t access) {
   add(PILEUS_ON_DEMAND, "on demand");
   return text;
 }
+
+namespace {
 
 /// "[0, 1]"; empty when the range is every number.
 std::string range_text(double low, double high) {

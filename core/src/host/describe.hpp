@@ -1,11 +1,15 @@
 // What a library declares, for people and for programs.
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "host/library.hpp"
 #include "host/search.hpp"
 
 namespace pileus::host {
+
+/// "owns, reads, writes" of the bits of pileus_quantity.access.
+std::string access_words(std::uint32_t access);
 
 /// Everything the operators of a library declare, as text for a terminal.
 std::string describe_text(const Library& library);
