@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   add_report(app, action);
   add_plugins(app, action);
   add_inspect(app, action);
+  add_conform(app, action);
   add_new_plugin(app, action);
   add_schema(app, action);
   app.require_subcommand(0, 1);

@@ -1,4 +1,4 @@
-// pileus schema: the JSON Schemas of scenes, studies and sweeps, for editors, and pages for reading.
+// pileus schema: JSON Schemas of scenes, studies and sweeps for editors, and pages for reading.
 #include <fmt/format.h>
 
 #include <fstream>

@@ -15,6 +15,7 @@ void add_plan(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_plugins(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
+void add_conform(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_new_plugin(CLI::App& app, Action& action);

@@ -17,6 +17,7 @@ class Relaxation : public pileus::Operator<Relaxation> {
     d.op.licence = "Apache-2.0";
     d.op.form = PILEUS_FLOW;
     d.provides("tracer_relaxation");
+    d.cites(nullptr, "no reference: the exact solution of a linear equation");
     tracer_ = d.owns("passive_tracer", "1").intensive().range(-1e6, 1e6).doc("the tracer relaxed");
     time_scale_ = d.number("time_scale", "s", 3600).range(1e-3, 1e9).doc("e-folding time");
     target_ = d.number("target", "1", 0).range(-1e6, 1e6).doc("value relaxed to");

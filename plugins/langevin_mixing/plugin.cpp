@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "displacement.hpp"
@@ -15,6 +17,8 @@ namespace {
 
 constexpr const char* brownian = "model == brownian";
 constexpr const char* langevin = "model == langevin";
+/// In units of its standard deviation, so that none comes near.
+constexpr double largest_velocity = 1e6;
 
 class LangevinMixing : public Operator<LangevinMixing> {
  public:
@@ -149,8 +153,11 @@ class LangevinMixing : public Operator<LangevinMixing> {
                   .doc("V² of independent velocities; at a merge it falls below the square of V");
   }
   static Slot own_velocity(Declaration& d, const char* name) {
-    return d.owns(name, "1").intensive().range(-1e6, 1e6).when(langevin).doc(
-        "velocity fluctuation over its standard deviation");
+    return d.owns(name, "1")
+        .intensive()
+        .range(-largest_velocity, largest_velocity)
+        .when(langevin)
+        .doc("velocity fluctuation over its standard deviation");
   }
 
   [[noreturn]] static void fail(const char* text) { throw Failure(text, PILEUS_E_CONFIG); }
@@ -283,6 +290,7 @@ class LangevinMixing : public Operator<LangevinMixing> {
     const Columns<D> c = columns<D>(block, true);
     const double* volume = block.in(volume_);
     double* weight = block.out(weight_);
+    std::uint64_t held = 0;
     block.each([&](auto p) {
       double x[D], w[D], normal[2 * D];
       for (int d = 0; d < D; ++d) x[d] = c.position[d][p], w[d] = c.velocity[d][p];
@@ -294,8 +302,13 @@ class LangevinMixing : public Operator<LangevinMixing> {
       bool turned;
       x[D - 1] = reflected(x[D - 1], bottom, top, turned);
       if (turned) w[D - 1] = -w[D - 1];
-      for (int d = 0; d < D; ++d) c.position[d][p] = x[d], c.velocity[d][p] = w[d];
+      for (int d = 0; d < D; ++d) {
+        c.position[d][p] = x[d];
+        c.velocity[d][p] = std::clamp(w[d], -largest_velocity, largest_velocity);
+        if (std::abs(w[d]) > largest_velocity) ++held;
+      }
     });
+    block.repaired(held);
   }
 
   /// A merged parcel moves with the mean of its parts' velocities, whose variance is Σ μ² of theirs

@@ -32,7 +32,7 @@ class RainSedimentation : public Operator<RainSedimentation> {
     rain_ = d.updates("mass_fraction_of_rain_in_air", "1").intensive("water").range(0.0, 1.0);
     drops_ = d.updates("number_of_raindrops_per_mass_of_air", "kg-1").intensive().range(0.0, 1e16);
     fallen_ = d.accumulates("rainfall_amount", "kg m-2").range(0.0, 1e6);
-    fallen_drops_ = d.accumulates("raindrop_number_at_surface", "m-2").range(0.0, 1e15);
+    fallen_drops_ = d.accumulates("raindrop_number_at_surface", "m-2").range(0.0, 1e25);
     water_ = d.budget("water");
   }
 

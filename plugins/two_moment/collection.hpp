@@ -125,6 +125,9 @@ struct SeifertBeheng {
 inline constexpr double collection_share = 0.1;
 inline constexpr int most_collection_substeps = 10000;
 
+/// Of a drop of 0.9 mm, where merging and break-up balance (Seifert & Beheng 2006), kg.
+inline constexpr double equilibrium_mass = pi / 6.0 * water_density * 0.9e-3 * 0.9e-3 * 0.9e-3;
+
 namespace detail {
 
 /// Share of each quantity that collection turns over per second.
@@ -156,7 +159,12 @@ inline void turn_over(Water& water, const CollectionShares& share, double h) {
   water.droplets = std::max(water.droplets * std::exp(-h * share.droplets),
                             std::min(water.droplets, water.cloud / largest_droplet));
   const double born = 0.5 * moved * share.drops_per_mass;
-  water.raindrops = (water.raindrops + born) * std::exp(h * share.raindrops) + born;
+  const double met = water.raindrops + born;
+  double drops = met * std::exp(h * share.raindrops);
+  // In a step too long to follow, break-up ends where the drops have their equilibrium size.
+  if (h * share.raindrops > collection_share)
+    drops = std::min(drops, std::max(met, water.rain / equilibrium_mass));
+  water.raindrops = drops + born;
 }
 
 }  // namespace detail

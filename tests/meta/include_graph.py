@@ -4,15 +4,16 @@ import re
 import tree
 
 # Folder of core/src → the folders it may include. Derived from the arrows
-# {study, authoring} → model → {planner, coupling, output} → {dynamics, host, scene} → parcels → mesh →
-# base.
+# {study, authoring → model, conform} → {planner, coupling, output} → {dynamics, host, scene} →
+# parcels → mesh → base.
 LAYERS = [["base"], ["mesh"], ["parcels"], ["dynamics", "host", "scene"],
           ["planner", "coupling", "output"], ["model"], ["study", "authoring"]]
 ALLOWED = {
     folder: {folder} | {f for lower in LAYERS[:level] for f in lower}
     for level, layer in enumerate(LAYERS) for folder in layer
 }
-ALLOWED["cli"] = {f for layer in LAYERS for f in layer} | {"cli"}
+ALLOWED["conform"] = ALLOWED["coupling"] | {"conform"}
+ALLOWED["cli"] = {f for layer in LAYERS for f in layer} | {"cli", "conform"}
 
 # First part of a third-party include → the folders that may name it.
 HOMES = {
@@ -30,9 +31,10 @@ HOMES = {
     "CLI": {"cli"},
     "Eigen": {"mesh", "parcels", "dynamics"},
     "boost": {"dynamics", "parcels", "planner", "scene", "study"},
-    "nlohmann": {"scene", "host", "planner", "coupling", "output", "model", "study", "cli"},
+    "nlohmann": {"scene", "host", "planner", "coupling", "output", "model", "study", "cli",
+                 "conform"},
     "fmt": {"base", "scene", "host", "planner", "coupling", "output", "model", "study",
-            "authoring", "cli"},
+            "authoring", "conform", "cli"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 

@@ -106,6 +106,22 @@ void read_exports(const Bytes& file, const Elf64_Shdr& table, const Elf64_Shdr& 
     const bool bindable =
         binding != STB_LOCAL && (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
     if (defined && bindable) facts.exports.push_back(text_at(file, strings, symbol.st_name));
+    if (!defined && binding == STB_GLOBAL)
+      facts.undefined.push_back(text_at(file, strings, symbol.st_name));
+  }
+}
+
+void read_dynamic(const Bytes& file, const Elf64_Shdr& table, const Elf64_Shdr& strings,
+                  ElfFacts& facts) {
+  file.part(table.sh_offset, table.sh_size, "dynamic section");
+  for (std::uint64_t i = 0; i < table.sh_size / sizeof(Elf64_Dyn); ++i) {
+    const auto entry =
+        file.at<Elf64_Dyn>(table.sh_offset + i * sizeof(Elf64_Dyn), "dynamic section");
+    if (entry.d_tag == DT_NULL) return;
+    if (entry.d_tag == DT_NEEDED) facts.needed.push_back(text_at(file, strings, entry.d_un.d_val));
+    if (entry.d_tag == DT_TEXTREL ||
+        (entry.d_tag == DT_FLAGS && (entry.d_un.d_val & DF_TEXTREL) != 0))
+      facts.has_text_relocations = true;
   }
 }
 
@@ -150,6 +166,9 @@ ElfFacts parse_elf(std::span<const std::byte> bytes) {
     if (section.sh_type == SHT_DYNSYM) {
       if (section.sh_link >= sections.size()) refuse("is damaged: symbols without names");
       read_exports(file, section, sections[section.sh_link], facts);
+    } else if (section.sh_type == SHT_DYNAMIC) {
+      if (section.sh_link >= sections.size()) refuse("is damaged: libraries without names");
+      read_dynamic(file, section, sections[section.sh_link], facts);
     } else if (!facts.has_note && section.sh_type != SHT_NULL &&
                text_at(file, sections[header.e_shstrndx], section.sh_name) == PILEUS_NOTE_SECTION) {
       read_note(file, section, facts);

@@ -13,8 +13,11 @@ namespace pileus::host {
 /// Facts found in the section and dynamic symbol tables of an ELF file.
 struct ElfFacts {
   bool has_note = false;
-  pileus_note note{};                // the texts inside are zero-terminated
-  std::vector<std::string> exports;  // defined symbols other objects can bind to
+  pileus_note note{};                  // the texts inside are zero-terminated
+  std::vector<std::string> exports;    // defined symbols other objects can bind to
+  std::vector<std::string> undefined;  // symbols it needs from elsewhere; weak ones left out
+  std::vector<std::string> needed;     // libraries it asks the loader for
+  bool has_text_relocations = false;   // the loader has to write into its code
 };
 
 /// Parses a little-endian 64-bit ELF shared object of this machine's architecture. Every offset is
