@@ -62,6 +62,9 @@ inline numerics::ValueAndSlope saturation_pressure(double temperature, Saturatio
     case SaturationFormula::magnus:
       return rational(610.94, 17.625, freezing - 243.04);
     case SaturationFormula::buck: {
+      // From 1108 K on this fit falls. What is as hot is no air, but searches may look there.
+      constexpr double hottest = 1000.0;
+      if (temperature > hottest) return {saturation_pressure(hottest, formula).value, 0.0};
       const double above = 257.14 + t, factor = 18.678 - t / 234.5;
       const double e = 611.21 * std::exp(factor * t / above);
       return {e, e * ((factor - t / 234.5) / above - factor * t / (above * above))};

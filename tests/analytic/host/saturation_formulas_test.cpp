@@ -65,6 +65,19 @@ TEST(SaturationFormulas, slopes_equal_the_centred_difference) {
   }
 }
 
+/// As a search for an equilibrium relies on, where there is no air either.
+TEST(SaturationFormulas, never_fall) {
+  for (const Table& table : tables) {
+    double below = 0;
+    for (double t = 100; t < 1e4; t *= 1.01) {
+      const auto [e, slope] = saturation_pressure(t, table.formula);
+      EXPECT_GE(e, below) << static_cast<int>(table.formula) << " " << t;
+      EXPECT_GE(slope, 0) << static_cast<int>(table.formula) << " " << t;
+      below = e;
+    }
+  }
+}
+
 TEST(SaturationMixingRatio, equals_its_table_and_stays_finite_near_boiling) {
   const double epsilon = 287.05 / 461.5;
   const auto at = [&](double p, double t) {

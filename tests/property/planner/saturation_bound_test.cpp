@@ -45,15 +45,18 @@ class Draws {
 // The bound rests on this: vapour pressure has no minimum inside any interval of temperatures. The
 // slope of ln e_s of the rational formulas, b (273.15 − pole)/(T − pole)², is positive wherever T
 // is above the pole. That of Buck's formula has the sign of 18.678·257.14·234.5 − 514.28 t − t² (t
-// in °C), which changes once, at t = 834.8 °C.
-TEST(VapourPressure, of_buck_rises_to_a_single_maximum) {
-  const auto slope = [](double kelvin) {
-    return thermo::saturation_pressure(kelvin, SaturationFormula::buck).slope;
+// in °C), which changes once, at t = 834.8 °C; the formula is held from 1000 K on.
+TEST(VapourPressure, of_buck_rises_and_stays_constant_where_it_would_fall) {
+  const auto buck = [](double kelvin) {
+    return thermo::saturation_pressure(kelvin, SaturationFormula::buck);
   };
   const double turn = 273.15 - 257.14 + std::sqrt(257.14 * 257.14 + 18.678 * 257.14 * 234.5);
   EXPECT_NEAR(turn, 1108.0, 0.5);
-  for (double t = coldest_described_air; t < turn - 1e-6; t += 0.25) ASSERT_GT(slope(t), 0) << t;
-  for (double t = turn + 1e-6; t < 2500; t += 0.25) ASSERT_LT(slope(t), 0) << t;
+  for (double t = coldest_described_air; t <= 1000; t += 0.25) ASSERT_GT(buck(t).slope, 0) << t;
+  for (double t = 1000.25; t < 2500; t += 0.25) {
+    ASSERT_EQ(buck(t).slope, 0) << t;
+    ASSERT_EQ(buck(t).value, buck(1000).value) << t;
+  }
 }
 
 /// Lower bound of d ln e_s/dT of Murphy & Koop's eq. 10 for all temperatures in [a, b]: every term
