@@ -20,6 +20,12 @@ inline double nudged(double value, double gathered, double share) {
   return (1.0 - std::min(share, 1.0)) * value + gathered;
 }
 
+/// The change alone, Σ_g w_pg f_g (φ_g − φ_p): for what is much smaller than the profile that φ is
+/// measured from. The digits that the difference to the profile has lost count by the share.
+inline double nudging_increment(double value, double gathered, double share) {
+  return gathered - std::min(share, 1.0) * value;
+}
+
 /// Piecewise linear in height, constant beyond both ends. `heights` ascend; one value stands for
 /// all heights.
 class Profile {

@@ -177,8 +177,12 @@ class GridNudging : public Operator<GridNudging> {
       const double before = r.gathered_from[p];
       if (share[p] == 0) return;
       // The bounds take away rounding alone.
-      const double after = std::clamp(nudged(before, gathered[p], share[p]), low, high);
-      r.values[p] = r.gathered_from == r.values ? after : r.values[p] + (after - before);
+      if (r.gathered_from == r.values) {
+        r.values[p] = std::clamp(nudged(before, gathered[p], share[p]), low, high);
+      } else {
+        r.values[p] += std::clamp(nudging_increment(before, gathered[p], share[p]), low - before,
+                                  high - before);
+      }
     });
   }
 
