@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "column_forcing.hpp"
@@ -111,11 +112,19 @@ class LargeScaleForcing : public Operator<LargeScaleForcing> {
     if (acts_on_wind()) force_wind(step, block, means, subjects);
     if (sponge_) damp(step, block, means, subjects);
     carry_out_all(block, parcels, subjects, brought);
+    for (const Subject& subject : std::span(subjects.list).first(subjects.count))
+      expect_in_range(block, slot_of(subject),
+                      "the large-scale forcing takes the air beyond what air can be; take shorter "
+                      "steps or a weaker forcing");
     for (std::size_t b = 0; b < brought.size(); ++b)
       if (brought[b] != 0) block.book(quantities_.budget[b], brought[b]);
   }
 
  private:
+  Slot slot_of(const Subject& subject) const {
+    return subject.scalar >= 0 ? quantities_.scalar[static_cast<std::size_t>(subject.scalar)]
+                               : quantities_.vorticity[static_cast<std::size_t>(subject.vorticity)];
+  }
   bool acts_on_wind() const { return pushes_ || nudges_ || geostrophic_ || wind_subsides_; }
 
   /// Refuses what is asked of quantities that the run does not have.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -77,6 +78,9 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
       if (!block.has(slot)) continue;
       double* theta = block.out(slot);
       parallel_for(block.count(), [&](std::int64_t p) { theta[p] += warmed[0][p]; });
+      expect_in_range(block, slot,
+                      "longwave radiation takes the air beyond the temperatures that air has; take "
+                      "shorter steps or a weaker flux");
       if (slot.index == theta_[0].index) block.book(heat_, given);
     }
   }
@@ -147,7 +151,13 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
       throw Failure("the domain reaches above the top of the reference atmosphere",
                     PILEUS_E_CONFIG);
     const double pressure = thermo::pressure_of_exner(at.exner, kappa_);
-    return {pressure / (value(gas_constant_) * at.theta_v * at.exner), at.exner};
+    const double density = pressure / (value(gas_constant_) * at.theta_v * at.exner);
+    if (!(density > 0 && std::isfinite(density)))
+      throw Failure(
+          "the reference atmosphere has no density that a number can hold; its gas constant, heat "
+          "capacity and gravity are not those of air",
+          PILEUS_E_CONFIG);
+    return {density, at.exner};
   }
 
   /// Turns the gathered water of every node into the increment of its parcels' potential

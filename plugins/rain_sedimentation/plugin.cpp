@@ -45,6 +45,10 @@ class RainSedimentation : public Operator<RainSedimentation> {
     gather(block, field);
     block.book(water_, -let_fall(block, field, step.dt));
     block.repaired(scatter(block, field));
+    for (const Slot slot : {rain_, drops_})
+      expect_in_range(block, slot,
+                      "rain piles up to more than air can hold: what falls in is more than what "
+                      "falls out; take shorter steps, or the rain was too much before");
   }
 
  private:

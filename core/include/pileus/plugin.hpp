@@ -250,6 +250,24 @@ class Operator {
     return static_cast<const pileus_item_lists_ext*>(found)->budget_scale;
   }
 
+  /// Rejects the step if a value of the quantity lies outside the range declared here or is not a
+  /// number, and names the parcel (of a global operator also of values of the ground): where
+  /// what comes out depends on what a scene prescribes. `why` tells the user what may be wrong.
+  void expect_in_range(const Block& block, Slot slot, const char* why) const {
+    const pileus_quantity& row = *table()->quantities[slot.index];
+    const double* values = block.in(slot);
+    const bool of_parcels = row.place == PILEUS_PARCEL;
+    const auto look = [&](std::int64_t i) {
+      if (!(values[i] >= row.low && values[i] <= row.high))
+        throw Retry(why).at(of_parcels ? block.uid(i) : 0, slot.index, values[i]);
+    };
+    if (table()->scope == PILEUS_GLOBAL) {
+      parallel_for(block.elements(slot), look);
+    } else {
+      block.each(look);
+    }
+  }
+
   /// Draws 0 … n−1 of `channel` (< 64) for one parcel at this step, each in (0,1).
   static void draw(const pileus_step& step, std::uint64_t uid, std::uint32_t channel,
                    std::uint32_t n, double* out) {
