@@ -139,12 +139,13 @@ class GroundLayer {
     });
   }
 
-  /// The same for what cannot be negative. A parcel that does not have what is to be taken from it
-  /// ends at zero; what it lacked is added to `owed` (negative) at the points that asked for it, in
-  /// units of M_j. Returns how many parcels that were.
-  std::uint64_t add_not_below_zero(VerticalWeight shape, const PointSums& sums,
-                                   std::span<const double> share, double* values,
-                                   std::span<double> owed) const {
+  /// The same for mass fractions. A parcel that does not have what is to be taken from it ends at
+  /// zero, one that would be more than water at one; what it lacked (negative) or could not take is
+  /// added to `owed` at the points that asked for it, in units of M_j. Returns how many parcels
+  /// that were.
+  std::uint64_t add_to_fraction(VerticalWeight shape, const PointSums& sums,
+                                std::span<const double> share, double* values,
+                                std::span<double> owed) const {
     std::uint64_t cut = 0;
     each_parcel([&](std::int64_t p) {
       const Corners c = corners(p);
@@ -157,11 +158,13 @@ class GroundLayer {
       if (given == 0 && taken == 0) return;
       const double available = values[p] + given;
       values[p] = available + taken;
-      if (!(values[p] < 0)) return;
-      const double lacking = values[p];
+      if (!(values[p] < 0 || values[p] > 1)) return;
+      const bool dry = values[p] < 0;
+      const double bound = dry ? 0 : 1, beyond = values[p] - bound, all = dry ? taken : given;
       for (std::size_t k = 0; k < 4; ++k)
-        if (part[k] < 0) owed[c.point[k]] += parcels_.volume[p] * lacking * (part[k] / taken);
-      values[p] = 0;
+        if (dry ? part[k] < 0 : part[k] > 0)
+          owed[c.point[k]] += parcels_.volume[p] * beyond * (part[k] / all);
+      values[p] = bound;
       ++cut;
     });
     return cut;

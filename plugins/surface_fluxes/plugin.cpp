@@ -50,6 +50,10 @@ struct PointFields {
   std::span<double> amount, share;
 };
 
+constexpr const char* too_strong =
+    "the flux of the ground is beyond what air can take up; look at the stated fluxes, their maps "
+    "and the state of the ground, or take shorter steps";
+
 class SurfaceFluxes : public Operator<SurfaceFluxes> {
  public:
   void describe(Declaration& d) {
@@ -237,6 +241,8 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
       f.buoyancy[j] = exchange.per_kelvin() * fluxes.heat + here.buoyancy;
       friction[j] = t.friction_velocity;
     });
+    for (const Slot slot : {q_.friction_velocity, q_.heat_flux, q_.moisture_flux, q_.buoyancy_flux})
+      expect_in_range(block, slot, too_strong);
   }
 
   static double mean_of(std::span<const double> values) {
@@ -275,6 +281,7 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
     for (std::size_t j = 0; j < flux.size(); ++j) f.amount[j] = step.dt * flux[j] * ground.area();
     const double sum = share_out(f);
     layer.add(VerticalWeight::ramp, f.sums, f.share, block.out(slot));
+    expect_in_range(block, slot, too_strong);
     if (slot.index == q_.theta_l.index) block.book(heat_, sum);
     if (!has_temperature(block)) block.book(buoyancy_, sum);
   }
@@ -292,11 +299,13 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
     double sum = share_out(f);
     std::fill(f.amount.begin(), f.amount.end(), 0.0);
     const std::uint64_t cut =
-        layer.add_not_below_zero(VerticalWeight::ramp, f.sums, f.share, block.out(slot), f.amount);
+        layer.add_to_fraction(VerticalWeight::ramp, f.sums, f.share, block.out(slot), f.amount);
     for (std::size_t j = 0; j < owed.size(); ++j) {
       sum -= f.amount[j];
       owed[j] = (owed[j] + f.amount[j]) / ground.area();
     }
+    expect_in_range(block, q_.owed, too_strong);
+    expect_in_range(block, slot, too_strong);
     block.book(water_, sum);
     return cut;
   }

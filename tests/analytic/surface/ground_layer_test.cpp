@@ -156,14 +156,35 @@ TEST(GroundLayer, TakesNoMoreThanThereIs) {
   std::vector<double> values(cloud.x.size()), owed(ground.points(), 0.0);
   for (double& q : values) q = u(random);
   const double before = cloud.sum(values);
-  const std::uint64_t cut = l.layer.add_not_below_zero(VerticalWeight::ramp, sums.spans(),
-                                                       shares(amounts, sums), values.data(), owed);
+  const std::uint64_t cut = l.layer.add_to_fraction(VerticalWeight::ramp, sums.spans(),
+                                                    shares(amounts, sums), values.data(), owed);
   EXPECT_GT(cut, 0u);
   for (const double q : values) EXPECT_GE(q, 0);
   for (std::size_t j = 0; j < owed.size(); ++j) {
     EXPECT_LE(owed[j], 0);
     EXPECT_GE(owed[j], std::min(amounts[j], 0.0) * (1 + 1e-12));
   }
+  const double came = std::accumulate(amounts.begin(), amounts.end(), 0.0) -
+                      std::accumulate(owed.begin(), owed.end(), 0.0);
+  EXPECT_NEAR(cloud.sum(values) - before, came, 1e-13 * before);
+}
+
+/// Never more than all of a parcel, and what it could not take is owed exactly.
+TEST(GroundLayer, GivesNoMoreThanAParcelCanTake) {
+  const Cloud cloud = random_cloud(4000, 7);
+  Layer l(ground, cloud, ground.depth);
+  Sums sums(ground.points());
+  l.layer.weigh(VerticalWeight::ramp, sums.spans());
+  const double much = ground.cell_volume();
+  const std::vector<double> amounts = random_amounts(8, -0.1 * much, much);
+  std::vector<double> values(cloud.x.size(), 0.5), owed(ground.points(), 0.0);
+  const double before = cloud.sum(values);
+  const std::uint64_t cut = l.layer.add_to_fraction(VerticalWeight::ramp, sums.spans(),
+                                                    shares(amounts, sums), values.data(), owed);
+  EXPECT_GT(cut, 0u);
+  for (const double q : values) EXPECT_LE(q, 1);
+  for (std::size_t j = 0; j < owed.size(); ++j)
+    EXPECT_LE(owed[j], std::max(amounts[j], 0.0) * (1 + 1e-12));
   const double came = std::accumulate(amounts.begin(), amounts.end(), 0.0) -
                       std::accumulate(owed.begin(), owed.end(), 0.0);
   EXPECT_NEAR(cloud.sum(values) - before, came, 1e-13 * before);
