@@ -138,6 +138,9 @@ class DropletsOperator : public Operator<DropletsOperator> {
       previous[p] = z[p];  // this ascent has been accounted for
       if (peak != nullptr) peak[p] = std::max(peak[p], did.largest_supersaturation);
     });
+    expect_in_range(block, theta_,
+                    "condensation takes the air beyond all temperatures of air; look at the latent "
+                    "heat, the heat capacity and the parcel's state");
   }
 
  private:

@@ -94,6 +94,14 @@ class TwoMoment : public Operator<TwoMoment> {
       repairs += static_cast<std::uint64_t>(did.limited + did.repaired);
       created += c.volume[p] * did.created;
     });
+    expect_in_range(block, theta_,
+                    "condensation takes the air beyond all temperatures of air; look at the latent "
+                    "heat, the heat capacity and the parcel's state");
+    for (const Slot slot : {droplets_, aerosol_number_, raindrops_})
+      if (block.has(slot))
+        expect_in_range(block, slot,
+                        "there are more particles than any air has; look at the aerosol's number "
+                        "and at the numbers that the parcels began with");
     block.book(number_budget_, created);
     block.repaired(repairs);
   }
