@@ -86,7 +86,7 @@ struct Quantities {
                        .range(-1e6, 1e6)
                        .doc("multiplies the stated flux of moisture; a scene may set it");
     owed = d.owns_on_surface("surface_moisture_owed", "m")
-               .range(-1e9, 1e9)
+               .range(-10.0, 10.0)  // a strong flux of 1e-4 m s-1 for a day
                .doc("moisture flux times time that parcels have still to get");
     friction_velocity = d.owns_on_surface("surface_friction_velocity", "m s-1").range(0.0, 1e3);
     buoyancy_flux = d.owns_on_surface("surface_buoyancy_flux", "m2 s-3").range(-1e6, 1e6);
