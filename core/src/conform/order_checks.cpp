@@ -55,9 +55,12 @@ std::string check_repeated_calls(const Case& c) {
   for_random_states(c, {}, [&](World& world, Frame& start) {
     check_repetition(start);
     if (!world.bound().is_local()) return;
-    const Frame forward = stepped(start, {64, false, 1});
-    expect_same(forward, stepped(start, {64, true, 1}), "with blocks in order",
-                "with blocks in reverse order");
+    Advance in_order, in_reverse;
+    const Frame forward = stepped(start, {64, false, 1}, &in_order);
+    const Frame backward = stepped(start, {64, true, 1}, &in_reverse);
+    expect_same_booking(in_order, in_reverse, "with blocks in reverse order");
+    if (in_order.ok())
+      expect_same(forward, backward, "with blocks in order", "with blocks in reverse order");
   });
   return {};
 }
@@ -93,12 +96,15 @@ std::string check_permutation(const Case& c) {
     Random random(world.seed());
     for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
     for (std::size_t k = 0; k < order.size(); ++k) back[order[k]] = static_cast<std::uint32_t>(k);
-    const Frame expected = stepped(start, {});
+    Advance here, there;
+    const Frame expected = stepped(start, {}, &here);
     Frame permuted = start;
     permuted.gather(order);
-    Frame found = stepped(permuted, {});
+    Frame found = stepped(permuted, {}, &there);
     found.gather(back);
-    expect_same(expected, found, "in one order of parcels", "in another");
+    expect_same_booking(here, there, "in another order of parcels");
+    // How far a call came that failed depends on where the parcel stands; the core restores all.
+    if (here.ok()) expect_same(expected, found, "in one order of parcels", "in another");
   });
   return {};
 }
