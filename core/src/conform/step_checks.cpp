@@ -13,6 +13,25 @@ namespace {
 /// Changes below this share of a value, or this one of the largest, are rounding.
 constexpr double rounding = 1e-12, rounding_of_largest = 1e-14;
 
+bool is_compared(const FrameSlot& slot) {
+  return slot.advances() && slot.kind == FrameSlot::Kind::parcel;
+}
+
+/// The largest value of what a quantity is exchanged for: itself, and all of its budget. Vapour
+/// that becomes cloud rounds as the cloud does, however little of it there is.
+double largest_value(const Frame& frame, std::size_t slot) {
+  const auto& rows = frame.world().bound().entry->table->quantities;
+  double largest = 0;
+  for (std::size_t s = 0; s < frame.slots().size(); ++s) {
+    const bool same_budget = rows[s].budget != nullptr && rows[slot].budget != nullptr &&
+                             std::string_view(rows[s].budget) == rows[slot].budget;
+    if (!is_compared(frame.slots()[s]) || !(s == slot || same_budget)) continue;
+    for (std::size_t p = 0; p < frame.parcels(); ++p)
+      largest = std::max(largest, std::abs(frame.slots()[s].values.numbers()[p]));
+  }
+  return largest;
+}
+
 /// For every quantity of the parcels that apply writes: the sum over parcels of |a − b|, parcel by
 /// parcel without what is rounding.
 std::vector<double> distances(const Frame& a, const Frame& b) {
@@ -20,10 +39,8 @@ std::vector<double> distances(const Frame& a, const Frame& b) {
   for (std::size_t s = 0; s < a.slots().size(); ++s) {
     const FrameSlot &x = a.slots()[s], &y = b.slots()[s];
     sums.push_back(0);
-    if (!x.advances() || x.kind != FrameSlot::Kind::parcel) continue;
-    double largest = 0;
-    for (std::size_t p = 0; p < a.parcels(); ++p)
-      largest = std::max(largest, std::abs(x.values.numbers()[p]));
+    if (!is_compared(x)) continue;
+    const double largest = largest_value(a, s);
     for (std::size_t p = 0; p < a.parcels(); ++p) {
       const double u = x.values.numbers()[p], v = y.values.numbers()[p];
       const double distance = std::abs(u - v);
