@@ -17,11 +17,11 @@ namespace kessler {
 /// steps go on to the root, so that a second call does nothing beyond rounding.
 inline double condensation(const pileus::MoistAir& air, double temperature, double pressure,
                            double vapour, double cloud) {
-  const double saturated = air.saturation(temperature, pressure).humidity;
-  const double excess = vapour - saturated;
-  // Rounding of T, of which q_s changes by 7 % per K, is 20 units in the last place of q_s.
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
-  const bool is_saturated = std::abs(excess) <= rounding * saturated;
+  const pileus::Saturation at = air.saturation(temperature, pressure);
+  const double excess = vapour - at.humidity;
+  // Of q_s itself and of T: 20 times as much in warm air, 70 times at 110 K.
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  const bool is_saturated = std::abs(excess) <= rounding * (at.humidity + temperature * at.slope);
   if (is_saturated || (excess < 0 && !(cloud > 0))) return 0.0;
   const double warming = air.warming();
   const auto residual = [&](double condensed) -> pileus::numerics::ValueAndSlope {

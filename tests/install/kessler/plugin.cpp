@@ -92,6 +92,10 @@ class Kessler : public pileus::Operator<Kessler> {
       drops[p] =
           raindrops(rain[p], air_.density(parcel.temperature, parcel.pressure), value(intercept_));
     });
+    if (drops != nullptr)
+      expect_in_range(block, drops_,
+                      "there are more drops than any air has; look at the pressure of the "
+                      "reference state and at the intercept");
   }
 
  private:
@@ -110,10 +114,10 @@ class Kessler : public pileus::Operator<Kessler> {
   /// saturation: the order of KW, in which cloud evaporates before rain does.
   void advance(Air& a, bool with_rain, double dt) const {
     if (with_rain) {
-      const double left = cloud_left(a.cloud, a.rain, value(threshold_), value(autoconversion_),
-                                     value(accretion_), dt);
-      a.rain += a.cloud - left;
-      a.cloud = left;
+      const double amount = collected(a.cloud, a.rain, value(threshold_), value(autoconversion_),
+                                      value(accretion_), dt);
+      a.rain += amount;
+      a.cloud -= amount;
     }
     const double condensed = condensation(air_, a.temperature, a.pressure, a.vapour, a.cloud);
     a.condense(condensed, air_.warming());

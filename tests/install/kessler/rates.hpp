@@ -18,24 +18,25 @@ inline double accretion_rate(double rain, double coefficient) {
   return rain > 0 ? coefficient * std::pow(rain, 0.875) : 0.0;
 }
 
-/// Cloud that is left after dt of autoconversion alone: the exact solution.
-inline double unconverted(double cloud, double threshold, double rate, double dt) {
-  return cloud > threshold ? threshold + (cloud - threshold) * std::exp(-rate * dt) : cloud;
+/// Cloud that dt of autoconversion alone turns into rain: the exact solution.
+inline double converted(double cloud, double threshold, double rate, double dt) {
+  return cloud > threshold ? -std::expm1(-rate * dt) * (cloud - threshold) : 0.0;
 }
 
-/// Cloud that is left after dt of both: accretion between two halves of autoconversion, by the rain
-/// there is half way. Second order in dt, positive and stable for any step.
+/// Cloud that dt of both turns into rain: accretion between two halves of autoconversion, by the
+/// rain there is half way. Second order in dt, positive and stable for any step; the amount and not
+/// what is left, of which the first rain in a cloud would have the rounding.
 ///
-/// Ensures   cloud itself for dt = 0; between 0 and cloud
-inline double cloud_left(double cloud, double rain, double threshold, double rate,
-                         double coefficient, double dt) {
-  if (!(cloud > 0) || dt == 0) return cloud;
-  const double first = unconverted(cloud, threshold, rate, 0.5 * dt);
-  const double rain_before = rain + (cloud - first);
-  const double predicted = first * std::exp(-accretion_rate(rain_before, coefficient) * dt);
-  const double rain_half_way = rain_before + 0.5 * (first - predicted);
-  const double second = first * std::exp(-accretion_rate(rain_half_way, coefficient) * dt);
-  return unconverted(second, threshold, rate, 0.5 * dt);
+/// Ensures   0 for dt = 0; between 0 and cloud
+inline double collected(double cloud, double rain, double threshold, double rate,
+                        double coefficient, double dt) {
+  if (!(cloud > 0) || dt == 0) return 0.0;
+  const double first = converted(cloud, threshold, rate, 0.5 * dt), rest = cloud - first;
+  const auto swept = [&](double by) { return -std::expm1(-accretion_rate(by, coefficient) * dt); };
+  const double predicted = rest * swept(rain + first);
+  const double middle = rest * swept(rain + first + 0.5 * predicted);
+  const double last = converted(rest - middle, threshold, rate, 0.5 * dt);
+  return std::min(cloud, first + middle + last);
 }
 
 /// Ventilation factor of rain, C = 1.6 + 124.9 (ρ q_r)^0.2046 with ρ q_r in g cm-3, KW eq. 2.14b.

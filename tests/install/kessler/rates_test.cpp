@@ -34,9 +34,9 @@ double integrated_cloud(double cloud, double rain, double dt) {
 
 double stepped_cloud(double cloud, double rain, double dt, int steps) {
   for (int n = 0; n < steps; ++n) {
-    const double left = kessler::cloud_left(cloud, rain, 1e-3, 1e-3, 2.2, dt / steps);
-    rain += cloud - left;
-    cloud = left;
+    const double collected = kessler::collected(cloud, rain, 1e-3, 1e-3, 2.2, dt / steps);
+    rain += collected;
+    cloud -= collected;
   }
   return cloud;
 }
@@ -48,17 +48,20 @@ void test_collection() {
   expect_near("accretion of 1 g/kg by 1 g/kg", 1e-3 * kessler::accretion_rate(1e-3, 2.2),
               2.2e-3 * std::pow(10.0, -2.625), 1e-18);
   // Without rain the first instants are autoconversion alone, solved exactly.
-  expect_near("autoconversion alone", kessler::cloud_left(3e-3, 0.0, 1e-3, 1e-3, 0.0, 500.0),
-              1e-3 + 2e-3 * std::exp(-0.5), 1e-17);
+  expect_near("autoconversion alone", kessler::collected(3e-3, 0.0, 1e-3, 1e-3, 0.0, 500.0),
+              2e-3 * (1 - std::exp(-0.5)), 1e-17);
   const double exact = integrated_cloud(3e-3, 1e-4, 300.0);
   const double coarse = std::abs(stepped_cloud(3e-3, 1e-4, 300.0, 20) - exact);
   const double fine = std::abs(stepped_cloud(3e-3, 1e-4, 300.0, 40) - exact);
   expect_near("halving the step quarters the error", coarse / fine, 4.0, 0.5);
   expect_near("a step of 15 s is within 2 per cent", coarse / exact, 0.0, 0.02);
-  expect_near("no time changes nothing", kessler::cloud_left(3e-3, 1e-3, 1e-3, 1e-3, 2.2, 0.0),
-              3e-3, 0.0);
+  expect_near("no time changes nothing", kessler::collected(3e-3, 1e-3, 1e-3, 1e-3, 2.2, 0.0), 0.0,
+              0.0);
   expect_near("no step takes more than there is",
-              kessler::cloud_left(3e-3, 1e-3, 1e-3, 1e-3, 2.2, 1e9), 0.0, 0.0);
+              std::max(0.0, kessler::collected(3e-3, 1e-3, 1e-3, 1e-3, 2.2, 1e9) - 3e-3), 0.0, 0.0);
+  // Of a cloud of 20 g/kg, at the rate of 1e-3 s-1 beyond 1 g/kg.
+  expect_near("the first rain has all digits",
+              kessler::collected(2e-2, 0.0, 1e-3, 1e-3, 0.0, 1e-8) / 1.9e-13, 1.0, 1e-10);
 }
 
 void test_evaporation() {
