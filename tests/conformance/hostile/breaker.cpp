@@ -129,7 +129,8 @@ class Breaker : public pileus::Operator<Self> {
   }
 
   double advanced(double x, const pileus_step& step, const pileus::Block& block) const {
-    const double rate = breaks("shared_by_instances") ? rate_of_all_instances : value(rate_);
+    double rate = breaks("shared_by_instances") ? rate_of_all_instances : value(rate_);
+    if (breaks("odd_steps_alone")) rate *= 2.0 * static_cast<double>(step.number % 2);
     const double target = breaks("amount_not_shared") ? 5.0 : value(target_);
     if (projects()) return 0.5 * (x + target);
     if (has_threshold()) return above_threshold(x, step, block);
@@ -138,6 +139,7 @@ class Breaker : public pileus::Operator<Self> {
     if (breaks("nan_at_zero") && x == 0) return std::nan("");
     double y = target + std::exp(-rate * step.dt) * (x - target);
     if (step.dt == 0) y = x;
+    if (breaks("trifle_per_call") && step.dt > 0) y += 1e-9;
     if (breaks("block_size_seen") && block.count() == 1) y *= last_bits;
     if (breaks("steps_counted")) y += 1e-6 * steps_ * step.dt * step.dt;
     return std::clamp(y, 0.0, breaks("amount_not_shared") ? 1e3 : 1.0);
