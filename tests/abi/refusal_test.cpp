@@ -23,12 +23,12 @@ TEST_P(Refusals, name_library_and_reason) {
 }
 
 constexpr Refusal refusals[] = {
-    {"wrong_magic", "its note does not begin with 'PILEUSNOTE0'"},
+    {"wrong_magic", "its note does not begin with 'PILEUSNOTE1'"},
     {"without_note", "carries no section '.pileus.note'"},
-    {"wrong_major", "built for major version 7 of the plugin interface, this program has 0"},
-    {"newer_minor", "needs plugin interface 0.4, this program has 0.3"},
+    {"wrong_major", "built for major version 7 of the plugin interface, this program has 1"},
+    {"newer_minor", "needs plugin interface 1.1, this program has 1.0"},
     {"fast_math", "rebuild it without -ffast-math"},
-    {"missing_entry", "does not export the entry function 'pileus_module_v0'"},
+    {"missing_entry", "does not export the entry function 'pileus_module_v1'"},
     {"extra_symbol", "exports more than the entry function: forgotten_helper"},
     {"throwing_entry", "entry function threw an exception"},
     {"null_module", "entry function returned NULL"},
@@ -36,7 +36,8 @@ constexpr Refusal refusals[] = {
     {"no_operators", "declares no operators"},
     {"disagrees_with_note", "state different interface versions"},
     {"short_operator", "operator table has size 16"},
-    {"short_row", "quantity 0 has size 40"},
+    {"short_row", "quantity 0 has size 40 where at least 104 is needed"},
+    {"reserved_in_use", "operator table has a reserved member that is not 0"},
     {"unknown_place", "quantity 'passive_tracer' has an unknown place"},
     {"unknown_scope", "scope has the unknown value 9"},
     {"unknown_flag", "flags hold an unknown bit"},

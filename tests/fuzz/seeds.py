@@ -24,9 +24,9 @@ def texts(*names):
 
 
 def library():
-    note = struct.pack("<16s4I64s32s64s64s", b"PILEUSNOTE0", 0, 1, 0, 0, b"org.example.seed",
+    note = struct.pack("<16s4I64s32s64s64s", b"PILEUSNOTE1", 1, 0, 0, 0, b"org.example.seed",
                        b"1.0.0", b"GCC 12", b"")
-    dynstr, (entry,) = texts("pileus_module_v0")
+    dynstr, (entry,) = texts("pileus_module_v1")
     symbols = bytes(24) + struct.pack("<IBBHQQ", entry, GLOBAL_FUNCTION, 0, 1, 0x1000, 16)
     names, places = texts(".pileus.note", ".dynsym", ".dynstr", ".shstrtab")
     content, sections = b"", [bytes(64)]

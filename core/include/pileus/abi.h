@@ -1,10 +1,16 @@
-/* pileus/abi.h - the whole binary contract between the core and its plugins, major 0.
+/* pileus/abi.h - the whole binary contract between the core and its plugins, major 1.
  *
  * Plain C11: no allocation changes owner across this line, no exception crosses it, no C++ type
  * appears in it. Strings are UTF-8, zero-terminated, and live as long as the table they stand in.
- * Tables that start with `size` may grow at the end (see PILEUS_HAS); pileus_view and pileus_grid
- * sit in hot arrays, have no `size` and are frozen. An unknown enum value is refused, not guessed.
- * While the major is 0 the contract may still change; from 1 on tables only grow.
+ * Members named `reserved` are 0, or refused.
+ *
+ * What 1.x promises: any plugin of major 1 runs in any program of major 1 that has at least the
+ * minor it needs. Tables that start with `size` grow at their end and nowhere else, the extensions'
+ * among them; pileus_view and pileus_grid sit in hot arrays, have no `size`, and pileus_note is
+ * read from files: these three never change. Nothing changes its meaning, position or type. Enums
+ * gain values and lose none; a value that the reader does not know is refused, not guessed, so that
+ * whoever uses a newer one says so in `abi_minor_needed` (a status that is not known is a failure).
+ * An extension that has to change otherwise gets a new number behind its slash.
  *
  * Phases:  [setup] one thread, nothing is stepping;  [step] one thread, between blocks;
  * [block] many threads at once on the same `self`, which is read-only then, with disjoint blocks;
@@ -17,12 +23,14 @@
 extern "C" {
 #endif
 
-#define PILEUS_ABI_MAJOR 0u /* also in the entry symbol's name: a new major is a new symbol */
-#define PILEUS_ABI_MINOR 3u /* raised when a table grows */
-#define PILEUS_ENTRY_SYMBOL "pileus_module_v0"
+#define PILEUS_ABI_MAJOR 1u /* also in the entry symbol's name: a new major is a new symbol */
+#define PILEUS_ABI_MINOR 0u /* raised when a table grows */
+#define PILEUS_ENTRY_SYMBOL "pileus_module_v1"
 #define PILEUS_EXPORT __attribute__((visibility("default")))
 /* Does table P, filled in by the other side, reach as far as MEMBER? A member that is not reached
- * reads as zero, and zero is a valid meaning of every member. */
+ * reads as zero, and zero is a valid meaning of every member added after minor 0. Those of minor 0
+ * are always reached: shorter tables are refused. No table has padding, where a later member could
+ * seem to be reached. */
 #define PILEUS_HAS(P, TYPE, MEMBER) \
   ((P)->size >= offsetof(TYPE, MEMBER) + sizeof(((const TYPE*)0)->MEMBER))
 
@@ -30,7 +38,7 @@ extern "C" {
 typedef uint32_t pileus_status;
 enum {
   PILEUS_OK = 0,
-  PILEUS_RETRY = 1,       /* rejected: the core restores the block and tries smaller steps */
+  PILEUS_RETRY = 1,       /* apply: the core restores the block and tries smaller steps */
   PILEUS_E_CONFIG = 16,   /* parameters contradict each other */
   PILEUS_E_INPUT = 17,    /* a value handed in lies outside its declared range */
   PILEUS_E_DIVERGED = 18, /* an iteration used up its declared limit */
@@ -39,7 +47,8 @@ enum {
   PILEUS_E_UNSUPPORTED = 21,
   PILEUS_E_INTERNAL = 22 /* anything else, a caught C++ exception included */
 };
-typedef struct pileus_error { /* owned by the caller, valid for one call */
+/* Owned by the caller, who sets `size`, and valid for one call; nothing beyond is written. */
+typedef struct pileus_error {
   uint32_t size;
   int32_t slot;   /* quantity at fault, -1: none */
   uint64_t uid;   /* parcel at fault, 0: none */
@@ -60,7 +69,9 @@ enum { /* place: where a quantity lives */
   PILEUS_SURFACE,           /* one element per column of cells: x + cells[0] * y */
   PILEUS_DOMAIN             /* one number of the whole run; see below */
 };
-enum { PILEUS_F64 = 1, PILEUS_F32, PILEUS_I64, PILEUS_U64 }; /* type */
+enum { /* type; F32 and U64 are words for later, no program of minor 0 takes them */
+  PILEUS_F64 = 1, PILEUS_F32, PILEUS_I64, PILEUS_U64
+};
 enum { /* access, a bit set */
   PILEUS_READ = 1u,
   PILEUS_WRITE = 2u,        /* returns a new value */
@@ -74,11 +85,12 @@ enum { /* access, a bit set */
 enum { /* nature: what happens at a merge or split; 0: as the quantity's owner declares */
   PILEUS_EXTENSIVE = 1, PILEUS_INTENSIVE, PILEUS_LABEL, PILEUS_DERIVED
 };
-enum { /* rule at a merge or split; 0: the default of the nature */
+enum { /* rule at a merge or split; 0: the default of the nature; the others are words for later, no
+        * program of minor 0 takes them */
   PILEUS_RULE_DEFAULT = 0, PILEUS_RULE_SUM, PILEUS_RULE_MEAN, PILEUS_RULE_MIN, PILEUS_RULE_MAX,
   PILEUS_RULE_COPY, PILEUS_RULE_SHARE, PILEUS_RULE_HOOK
 };
-enum { /* scope: which parcels one call must see together; choose the narrowest */
+enum { /* scope: which parcels one call must see together, and maybe more; choose the narrowest */
   PILEUS_LOCAL = 1, PILEUS_CELLWISE, PILEUS_COLUMNWISE, PILEUS_GLOBAL
 };
 enum { /* form */
@@ -110,8 +122,8 @@ enum { PILEUS_PROVIDES = 1, PILEUS_REQUIRES, PILEUS_EXCLUDES };     /* role of a
 enum { PILEUS_LT = 1, PILEUS_LE, PILEUS_GT, PILEUS_GE, PILEUS_NE }; /* comparison */
 /* clang-format on */
 
-/* `when`, wherever it stands: NULL (always), or comparisons of a choice, switch, integer or number
- * with a literal (in SI units), joined by " and ":  "thermodynamics == real",  "rate != 0".
+/* `when`, wherever it stands: NULL (always), or comparisons (== and !=) of a choice, switch,
+ * integer or number with a literal (in SI units), joined by " and ":  "thermodynamics == real".
  * In the `when` of a quantity a term may also ask for an effect that the operator provides:
  * "effect.condensation == on". Where an effect is off, its quantities do not exist (their views
  * are NULL), and the operator leaves out the work for them; where it is watched, they begin to be
@@ -141,7 +153,7 @@ typedef struct pileus_quantity { /* its position in `quantities` is its slot num
   uint32_t size, place, type, components, access, nature, on_merge, on_split;
   const char* name;   /* CF standard name, or one registered in schemas/quantities.yaml */
   const char* units;  /* UDUNITS text of that registration; "1" for pure numbers */
-  const char* weight; /* INTENSIVE: the extensive quantity that weights its mean */
+  const char* weight; /* INTENSIVE: what weights its mean: "parcel_volume", or the multiplicity */
   const char* budget; /* closed sum it belongs to ("water"), or NULL */
   const char* when;   /* the slot exists only then */
   double low, high;   /* admissible range, both ends included */
@@ -181,12 +193,14 @@ typedef struct pileus_reference {
   const char *doi, *text;
 } pileus_reference;
 
-/* ---- what the core lends --------------------------------------------------------------------- */
+/* ---- what the core lends ------------------------------------------------------------------------
+ * pileus_host, what its `extension` returns and pileus_values live as long as `self`; steps, blocks
+ * and all they point to until the call returns. */
 typedef struct pileus_view { /* element k, component c: (char*)data + k*stride + c*lane */
   void* data;                /* NULL when the slot does not exist in this run */
   int64_t stride, lane;      /* bytes */
   int64_t count;             /* elements */
-  uint32_t type, components, space, access; /* space 0: host memory */
+  uint32_t type, components, space, access; /* space 0: host memory; nothing else unasked */
 } pileus_view;
 
 typedef struct pileus_grid {    /* two-dimensional runs have cells[1] == 1 */
@@ -215,7 +229,7 @@ typedef struct pileus_block {
   const int64_t* item_begin; /* per parcel, into ITEM views; NULL without items */
   const int32_t *item_count, *item_room; /* item_room: reserved, NULL */
   const pileus_grid* grid;               /* NULL in a zero-dimensional box */
-  double* ledger;                        /* per declared budget: amount brought in from outside */
+  double* ledger; /* apply: per declared budget, amount brought in from outside, to be added to */
 } pileus_block;
 
 typedef struct pileus_values { /* validated before it is given; lives as long as `self` */
@@ -231,18 +245,22 @@ typedef pileus_status (*pileus_range_fn)(void* user, int64_t begin, int64_t end,
 
 enum { PILEUS_LOG_DEBUG = 0, PILEUS_LOG_INFO, PILEUS_LOG_WARNING, PILEUS_LOG_ERROR };
 
-typedef struct pileus_host {
+typedef struct pileus_host { /* no function of minor 0 is NULL */
   uint32_t size, abi_minor;
   void* impl;                                                               /* the core's own */
   void (*log)(const struct pileus_host*, uint32_t level, const char* text); /* [any] */
-  int (*should_stop)(const struct pileus_host*); /* [any] poll in long loops */
-  /* [step][block] 64-byte aligned, undefined contents, gone after the call; NULL: no memory */
+  /* [any] for long loops: 1 when the run is to end after this step. Who gives up the step instead,
+   * with whatever error, ends the run without a checkpoint of it. */
+  int (*should_stop)(const struct pileus_host*);
+  /* [step][block] 64-byte aligned, undefined contents, gone after the call (in a loop: after the
+   * chunk); NULL: no memory, or none asked for */
   void* (*scratch)(const struct pileus_host*, size_t bytes);
   /* [any] draws 0 ... n-1 of a channel (< 64) for one parcel, each in the open interval (0,1);
    * n at most 131072. Philox4x32-10; the keys are specified in pileus/philox.hpp. */
   void (*uniform)(const struct pileus_host*, const pileus_step*, uint64_t uid, uint32_t channel,
                   uint32_t n, double* out);
-  /* [step] of GLOBAL operators; not nested. Chunks of `grain`, whatever the number of threads. */
+  /* [step] of GLOBAL operators; not nested. Chunks of `grain`, whatever the number of threads, each
+   * with a pileus_error of its own, of which a failing one is handed on. */
   pileus_status (*parallel_for)(const struct pileus_host*, int64_t n, int64_t grain,
                                 pileus_range_fn, void* user, pileus_error*);
   /* [any] named timers in the run's ledger; a token of 0 is not timed */
@@ -251,15 +269,14 @@ typedef struct pileus_host {
   const void* (*extension)(const struct pileus_host*,
                            const char* id); /* [setup][step] NULL: unknown */
   /* [step][block] counts repairs for the run's ledger: increments that a limiter cut, values moved
-   * into their range. Conserving or not, none goes unreported. Since minor 1 */
+   * into their range. Conserving or not, none goes unreported. */
   void (*repaired)(const struct pileus_host*, uint64_t count);
 } pileus_host;
 
-/* ---- what a plugin implements ------------------------------------------------------------------
- */
+/* ---- what a plugin implements --------------------------------------------------------------- */
 typedef struct pileus_operator {
   uint32_t size, repeatability, scope, form, flags, reserved;
-  const char* id;   /* reverse DNS: "org.example.kessler" */
+  const char* id;   /* reverse DNS: pileus_note.module, or that, a dot and more */
   const char* kind; /* "microphysics", "mixing", "surface", "forcing", "thermodynamics", ... */
   const char *version, *title, *summary, *authors, *licence; /* SemVer; SPDX */
   const pileus_reference* const* references; /* these six are zero-terminated lists; NULL: empty */
@@ -268,7 +285,8 @@ typedef struct pileus_operator {
   const pileus_effect* const* effects;
   const pileus_condition* const* active_if; /* empty: always active */
   const char* const* budgets;
-  pileus_status (*create)(const pileus_host*, void** self, pileus_error*);     /* [setup] */
+  /* [setup] Where it fails it leaves nothing behind: destroy is not called. */
+  pileus_status (*create)(const pileus_host*, void** self, pileus_error*);
   pileus_status (*configure)(void* self, const pileus_values*, pileus_error*); /* [setup] */
   /* [step] once, at the start of a run that is not a restart: sets what it CREATEs; or NULL */
   pileus_status (*init)(void* self, const pileus_step*, const pileus_block* whole, pileus_error*);
@@ -281,8 +299,9 @@ typedef struct pileus_operator {
   pileus_status (*diagnose)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
   /* [block] advance by step->dt; NULL: CLOSURE */
   pileus_status (*apply)(void* self, const pileus_step*, const pileus_block*, pileus_error*);
-  void (*destroy)(void* self);                          /* [setup] in any state; never fails */
-  const void* (*extension)(void* self, const char* id); /* [setup] or NULL */
+  void (*destroy)(void* self); /* [setup] in any state; never fails */
+  /* [setup] after configure; a table that lives as long as `self`, or NULL: unknown; or NULL */
+  const void* (*extension)(void* self, const char* id);
 } pileus_operator;
 
 /* Extension "pileus.items/1" of the operator that CREATEs the items, asked for once after
@@ -337,30 +356,39 @@ typedef struct pileus_mesh_ext {
                                double* const* values, uint32_t count, pileus_error*);
 } pileus_mesh_ext;
 
-/* Extension "pileus.state/1": private memory that the declared quantities cannot express. */
+/* Extension "pileus.state/1" of an operator, asked for once after configure: private memory that
+ * the declared quantities cannot express. It changes in init and prepare alone, since a call of
+ * apply may be rejected and repeated. Every checkpoint holds it. */
+#define PILEUS_STATE_EXTENSION "pileus.state/1"
 typedef struct pileus_state_ext {
   uint32_t size, format; /* format: the plugin's own revision of the bytes */
-  pileus_status (*save)(void* self, int (*put)(void* sink, const void*, size_t), void* sink,
-                        pileus_error*); /* [step] */
-  pileus_status (*load)(void* self, uint32_t format, const void*, size_t, pileus_error*);
+  /* [step] Hands over the bytes, in as many parts as it likes. `put` returns 0 when there is no
+   * room for more; then PILEUS_E_MEMORY is to be returned. */
+  pileus_status (*save)(void* self, int (*put)(void* sink, const void* bytes, size_t count),
+                        void* sink, pileus_error*);
+  /* [step] at a restart, where there is no init. The format is that of the plugin that saved; what
+   * it cannot read it refuses. */
+  pileus_status (*load)(void* self, uint32_t format, const void* bytes, size_t count,
+                        pileus_error*);
 } pileus_state_ext;
 
-/* ---- entry
- * ---------------------------------------------------------------------------------------- */
+/* ---- entry ---------------------------------------------------------------------------------- */
 typedef struct pileus_module {
-  uint32_t size, abi_minor_built, abi_minor_needed, reserved;
-  const pileus_operator* const* operators; /* zero-terminated */
+  uint32_t size, abi_minor_built, abi_minor_needed, reserved; /* the minors: as in the note */
+  const pileus_operator* const* operators;                    /* zero-terminated */
 } pileus_module;
 /* The one exported function. [setup] No side effects; must not fail. */
-PILEUS_EXPORT const pileus_module* pileus_module_v0(void);
+PILEUS_EXPORT const pileus_module* pileus_module_v1(void);
 
 /* Facts about the binary, in the ELF section PILEUS_NOTE_SECTION: read from the file before any of
  * its code runs. The first record of the section counts. */
 #define PILEUS_NOTE_SECTION ".pileus.note"
-#define PILEUS_NOTE_MAGIC "PILEUSNOTE0"
+#define PILEUS_NOTE_MAGIC "PILEUSNOTE1"
 enum { PILEUS_BUILT_FASTMATH = 1u, PILEUS_BUILT_ASSERTS = 2u, PILEUS_BUILT_SANITIZED = 4u };
 typedef struct pileus_note {
   char magic[16]; /* PILEUS_NOTE_MAGIC, zero-padded */
+  /* Needed: the lowest minor of a program that it runs in; 0 where all that is newer is asked for
+   * with PILEUS_HAS. Built: that of the header, for people. */
   uint32_t abi_major, abi_minor_built, abi_minor_needed, build_flags;
   char module[64], version[32], toolchain[64], reserved[64]; /* zero-terminated texts */
 } pileus_note;

@@ -10,9 +10,13 @@
 //   void diagnose(const pileus_step&, Block) const      derived quantities; pure
 //   void apply(const pileus_step&, Block) const         advance by step.dt
 //   const void* extension(const char* id)               further tables
+//   std::vector<std::byte> save() const                 what it keeps beside its quantities: for
+//   void load(std::uint32_t format, std::span<const std::byte>)              checkpoints, and back
+//   static constexpr std::uint32_t state_format         what these bytes are, beside save and load
 //
 // Hooks report failures by throwing; no exception ever leaves the library.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -27,36 +31,11 @@
 
 #include "abi.h"
 #include "declaration.hpp"
+#include "failure.hpp"
 #include "philox.hpp"
 #include "piecewise_linear.hpp"
 
 namespace pileus {
-
-/// A failure of a hook: thrown by plugin code, turned into a status and a pileus_error record.
-struct Failure : std::exception {
-  pileus_status status;
-  pileus_error record{};
-
-  explicit Failure(const char* text, pileus_status code = PILEUS_E_INTERNAL) : status(code) {
-    record.slot = -1;
-    std::snprintf(record.text, sizeof record.text, "%s", text);
-  }
-  /// Names the parcel, the quantity (by slot) and the value at fault.
-  Failure& at(std::uint64_t uid, std::uint32_t slot, double value) {
-    record.uid = uid;
-    record.slot = static_cast<std::int32_t>(slot);
-    record.value = value;
-    return *this;
-  }
-  const char* what() const noexcept override { return record.text; }
-};
-
-/// Rejects the step: the core restores the block and calls again with smaller steps.
-struct Retry : Failure {
-  explicit Retry(const char* why, double smaller_dt = 0) : Failure(why, PILEUS_RETRY) {
-    record.dt_hint = smaller_dt;
-  }
-};
 
 /// Access to a quantity of any stride and number of components.
 template <class T>
@@ -281,11 +260,7 @@ class Operator {
       body();
       return PILEUS_OK;
     } catch (const Failure& failure) {
-      if (error != nullptr) {
-        const std::uint32_t size = error->size;
-        *error = failure.record;
-        error->size = size;
-      }
+      hand_over(failure.record, error);
       // What was thrown did not succeed, whatever its status says.
       return failure.status != PILEUS_OK ? failure.status : pileus_status{PILEUS_E_INTERNAL};
     } catch (const std::bad_alloc&) {
@@ -320,6 +295,7 @@ class Operator {
     Self{}.describe(d);
     d.op.create = [](const pileus_host* host, void** self, pileus_error* error) {
       return guarded(error, [&] {
+        require_whole(PILEUS_HAS(host, pileus_host, repaired), "pileus_host");
         auto made = std::make_unique<Self>();
         Declaration bound;
         made->describe(bound);
@@ -329,6 +305,7 @@ class Operator {
     };
     d.op.configure = [](void* self, const pileus_values* values, pileus_error* error) {
       return guarded(error, [&] {
+        require_whole(PILEUS_HAS(values, pileus_values, list_count), "pileus_values");
         auto* me = static_cast<Self*>(self);
         static_cast<Operator*>(me)->keep(*values);
         if constexpr (requires { me->configured(); }) me->configured();
@@ -346,6 +323,7 @@ class Operator {
       op.init = [](void* self, const pileus_step* step, const pileus_block* whole,
                    pileus_error* error) {
         return guarded(error, [&] {
+          require_whole(*step, *whole);
           auto* me = static_cast<Self*>(self);
           me->init(*step, Block(*whole, *static_cast<Operator*>(me)->host_));
         });
@@ -355,20 +333,52 @@ class Operator {
       op.prepare = [](void* self, const pileus_step* step, const pileus_block* whole, double* limit,
                       pileus_error* error) {
         return guarded(error, [&] {
+          require_whole(*step, *whole);
           auto* me = static_cast<Self*>(self);
           *limit = me->prepare(*step, Block(*whole, *static_cast<Operator*>(me)->host_));
         });
       };
     }
-    if constexpr (requires(Self & s, const char* id) { s.extension(id); }) {
+    add_extensions(op);
+  }
+
+  static void add_extensions(pileus_operator& op) {
+    constexpr bool has_more = requires(Self & s, const char* id) {
+      s.extension(id);
+    };
+    constexpr bool keeps_state = requires(const Self& s) {
+      s.save();
+    };
+    if constexpr (has_more || keeps_state) {
       op.extension = [](void* self, const char* id) -> const void* {
         try {
-          return static_cast<Self*>(self)->extension(id);
+          if constexpr (keeps_state)
+            if (std::strcmp(id, PILEUS_STATE_EXTENSION) == 0) return &state_table();
+          if constexpr (has_more) return static_cast<Self*>(self)->extension(id);
         } catch (...) {
-          return nullptr;
         }
+        return nullptr;
       };
     }
+  }
+
+  static const pileus_state_ext& state_table() {
+    static const pileus_state_ext table{
+        sizeof(pileus_state_ext), Self::state_format,
+        [](void* self, int (*put)(void*, const void*, std::size_t), void* sink,
+           pileus_error* error) {
+          return guarded(error, [&] {
+            const std::vector<std::byte> bytes = static_cast<const Self*>(self)->save();
+            if (put(sink, bytes.data(), bytes.size()) == 0) throw std::bad_alloc();
+          });
+        },
+        [](void* self, std::uint32_t format, const void* bytes, std::size_t count,
+           pileus_error* error) {
+          return guarded(error, [&] {
+            static_cast<Self*>(self)->load(format, {static_cast<const std::byte*>(bytes), count});
+          });
+        }};
+    return table;
   }
 
   static void add_block_hooks(pileus_operator& op) {
@@ -376,6 +386,7 @@ class Operator {
       op.diagnose = [](void* self, const pileus_step* step, const pileus_block* block,
                        pileus_error* error) {
         return guarded(error, [&] {
+          require_whole(*step, *block);
           const auto* me = static_cast<const Self*>(self);
           me->diagnose(*step, Block(*block, *static_cast<const Operator*>(me)->host_));
         });
@@ -385,6 +396,7 @@ class Operator {
       op.apply = [](void* self, const pileus_step* step, const pileus_block* block,
                     pileus_error* error) {
         return guarded(error, [&] {
+          require_whole(*step, *block);
           const auto* me = static_cast<const Self*>(self);
           me->apply(*step, Block(*block, *static_cast<const Operator*>(me)->host_));
         });
@@ -416,19 +428,26 @@ class Operator {
 #define PILEUS_NOTE_SANITIZED_ 0u
 #endif
 
+/// The lowest minor of a program that the library runs in, for its author to raise before this
+/// header is included; 0 where whatever is newer is asked for with PILEUS_HAS.
+#ifndef PILEUS_ABI_MINOR_NEEDED
+#define PILEUS_ABI_MINOR_NEEDED 0u
+#endif
+
 /// Defines the entry function and the note of a library with the given operators:
 /// PILEUS_MODULE("rain", "1.0.0", Kessler::table(), Evaporation::table())
 #define PILEUS_MODULE(MODULE, VERSION, ...)                                                   \
-  extern "C" PILEUS_EXPORT const pileus_module* pileus_module_v0(void) {                      \
+  extern "C" PILEUS_EXPORT const pileus_module* pileus_module_v1(void) {                      \
     static const pileus_operator* const list[] = {__VA_ARGS__, nullptr};                      \
-    static const pileus_module module{sizeof(pileus_module), PILEUS_ABI_MINOR, 0u, 0u, list}; \
+    static const pileus_module module{sizeof(pileus_module), PILEUS_ABI_MINOR,                \
+                                      PILEUS_ABI_MINOR_NEEDED, 0u, list};                     \
     return &module;                                                                           \
   }                                                                                           \
   [[gnu::section(".pileus.note"), gnu::used]] static const pileus_note pileus_note_record = { \
       PILEUS_NOTE_MAGIC,                                                                      \
       PILEUS_ABI_MAJOR,                                                                       \
       PILEUS_ABI_MINOR,                                                                       \
-      0u,                                                                                     \
+      PILEUS_ABI_MINOR_NEEDED,                                                                \
       PILEUS_NOTE_FASTMATH_ | PILEUS_NOTE_ASSERTS_ | PILEUS_NOTE_SANITIZED_,                  \
       MODULE,                                                                                 \
       VERSION,                                                                                \

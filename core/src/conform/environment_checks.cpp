@@ -172,7 +172,8 @@ std::string check_own_tests(const Case& c) {
   const void* found = subject.extension(PILEUS_SELFTEST_EXTENSION);
   if (found == nullptr) throw NotApplicable{"it brings none (" PILEUS_SELFTEST_EXTENSION ")"};
   const auto& tests = *static_cast<const pileus_selftest_ext*>(found);
-  if (tests.size < sizeof tests || tests.name == nullptr || tests.run == nullptr)
+  if (!PILEUS_HAS(&tests, pileus_selftest_ext, run) || tests.name == nullptr ||
+      tests.run == nullptr)
     fail("its table of tests is too short or lacks a function");
   for (std::uint32_t test = 0; test < tests.count; ++test) {
     pileus_error error{};

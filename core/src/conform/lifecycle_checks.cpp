@@ -117,11 +117,14 @@ std::string check_restart(const Case& c) {
     const auto one = make_subject(whole);
     if (!advance(*one, whole, step_of(1, 1, c.seed)).ok()) throw StateRefused{"a step failed"};
     advance(*one, whole, step_of(2, 1, c.seed));
+    std::optional<host::PrivateState> kept;
     {
       const auto before = make_subject(parted);
       advance(*before, parted, step_of(1, 1, c.seed));
+      kept = before->save();
     }
     const auto after = make_subject(parted);
+    if (kept) after->load(*kept);
     advance(*after, parted, step_of(2, 1, c.seed));
     if (const auto found = whole.difference(parted))
       fail(describe(whole, *found, "in one run", "after a restart"), found->uid);

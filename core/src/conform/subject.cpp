@@ -102,4 +102,25 @@ const void* Subject::extension(const char* id) const {
   return found;
 }
 
+std::optional<host::PrivateState> Subject::save() const {
+  const void* answer = extension(PILEUS_STATE_EXTENSION);
+  if (answer == nullptr) return std::nullopt;
+  const auto ext = host::read_state_extension(answer);
+  if (!ext) fail("its table of " PILEUS_STATE_EXTENSION " is too short or lacks a function");
+  host::PrivateState state;
+  const CallOutcome outcome = call("save", 0, [&](pileus_error* error) {
+    return host::collect_state(*ext, self_, state, error);
+  });
+  if (!outcome.ok()) fail("save " + outcome.describe());
+  return state;
+}
+
+void Subject::load(const host::PrivateState& state) {
+  const auto ext = host::read_state_extension(extension(PILEUS_STATE_EXTENSION));
+  const CallOutcome outcome = call("load", 0, [&](pileus_error* error) {
+    return ext->load(self_, state.format, state.bytes.data(), state.bytes.size(), error);
+  });
+  if (!outcome.ok()) fail("load " + outcome.describe());
+}
+
 }  // namespace pileus::conform

@@ -2,10 +2,12 @@
 // put back or asked again, only caught.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "conform/check.hpp"
 #include "host/parameter_values.hpp"
+#include "host/private_state.hpp"
 #include "host/services.hpp"
 
 namespace pileus::conform {
@@ -46,6 +48,9 @@ class Subject {
   CallOutcome diagnose(const pileus_step& step, const pileus_block& block) const;
   CallOutcome apply(const pileus_step& step, const pileus_block& block) const;
   const void* extension(const char* id) const;
+  /// Its private state (pileus.state/1), if it keeps any, and back to a fresh instance.
+  std::optional<host::PrivateState> save() const;
+  void load(const host::PrivateState& state);
   void* self() const { return self_; }
 
  private:

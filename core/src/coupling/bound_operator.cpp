@@ -219,7 +219,7 @@ void follow_effects(BoundOperator& bound) {
 
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
                             const SurfaceFields& surface, const BoundMesh& mesh,
-                            std::uint32_t stream, const std::atomic<bool>* stop) {
+                            std::uint32_t stream, bool (*stop)()) {
   const std::uint32_t scope = entry.table->op.scope;
   if (scope != PILEUS_LOCAL && scope != PILEUS_GLOBAL) {
     throw Error(ExitCode::plugin,

@@ -114,6 +114,6 @@ struct BoundMesh {
 ///         the scope is not offered
 BoundOperator bind_operator(const OperatorEntry& entry, const parcels::Store& store,
                             const SurfaceFields& surface, const BoundMesh& mesh,
-                            std::uint32_t stream, const std::atomic<bool>* stop);
+                            std::uint32_t stream, bool (*stop)());
 
 }  // namespace pileus::coupling

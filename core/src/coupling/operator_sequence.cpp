@@ -168,25 +168,12 @@ double OperatorSequence::dt_limit() const {
 }
 
 void OperatorSequence::init(const StepTime& step) {
-  start(step, true);
-}
-void OperatorSequence::resume(const StepTime& step) {
-  start(step, false);
-}
-
-void OperatorSequence::start(const StepTime& step, bool new_run) {
   prepare_workspaces();
-  if (new_run) {
-    surface_.start(surface_.columns());
-    if (store_->items().exist()) store_->items().start(store_->size());
-    remember_heights();
-  }
+  surface_.start(surface_.columns());
+  if (store_->items().exist()) store_->items().start(store_->size());
+  remember_heights();
   for (const std::size_t which : order_of_init()) {
     BoundOperator& bound = bound_[which];
-    if (!new_run) {
-      bound.instance->resume();
-      continue;
-    }
     for (const std::size_t s : bound.written) {
       const pileus_quantity& row = bound.entry->table->quantities[s];
       const bool set = std::find(options_.initial.begin(), options_.initial.end(), row.name) !=

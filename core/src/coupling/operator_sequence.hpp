@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,7 +41,7 @@ struct SequenceOptions {
   scene::Coupling coupling;
   std::vector<std::string> initial;  // scalars the initial state sets
   std::uint64_t seed = 0;
-  const std::atomic<bool>* stop = nullptr;  // answers the plugins' should_stop
+  bool (*stop)() = nullptr;  // answers the plugins' should_stop, on any thread
 };
 
 /// The grid record plugins see.
@@ -58,6 +59,9 @@ pileus_grid abi_grid(const mesh::Grid<D>& grid) {
   }
   return abi;
 }
+
+/// By the names of the operators.
+using PrivateStates = std::map<std::string, host::PrivateState>;
 
 class OperatorSequence {
  public:
@@ -95,7 +99,11 @@ class OperatorSequence {
   /// the plugins' init hooks are called. Then diagnoses.
   void init(const StepTime& step);
   /// Starts from a checkpoint whose state is in the store. Then diagnoses.
-  void resume(const StepTime& step);
+  /// Errors  Error(ExitCode::usage) without a name of the checkpoint if private states are missing
+  /// or not asked for; Error(ExitCode::plugin) if an operator refuses its own
+  void resume(const StepTime& step, const PrivateStates& states = {});
+  /// What operators keep beside their quantities. Errors  Error(ExitCode::plugin)
+  PrivateStates private_states() const;
 
   /// Brings every derived quantity up to date with parcels that have moved.
   void diagnose(const StepTime& step);
@@ -130,7 +138,6 @@ class OperatorSequence {
  private:
   void prepare_workspaces();
   pileus_step step_record(const BoundOperator& bound, const StepTime& at, bool second_half) const;
-  void start(const StepTime& step, bool new_run);
   std::vector<std::size_t> order_of_init() const;
   void refresh(const StepTime& step, Derived what);
   void run_closures(const StepTime& step, Derived what);

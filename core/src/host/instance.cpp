@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "host/breadcrumb.hpp"
 #include "host/floating_point.hpp"
+#include "host/row_rules.hpp"
 
 namespace pileus::host {
 namespace {
@@ -114,29 +115,46 @@ void Instance::configure(ParameterValues values) {
     return table_->op.configure(self_, &view, error);
   });
   if (!result.ok()) refuse("configure", result);
-  ask_about_items();
+  take_over_items(ask(PILEUS_ITEMS_EXTENSION));
+  take_over_state(ask(PILEUS_STATE_EXTENSION));
   state_ = after(state_, LifeCall::configure);
 }
 
-/// Errors  Error(ExitCode::plugin) if it says something impossible
-void Instance::ask_about_items() {
-  if (table_->op.extension == nullptr) return;
+void Instance::refuse_answer(const char* extension, const char* why) const {
+  throw Error(ExitCode::plugin, std::string("plugin ") + table_->op.id + " answers " + extension +
+                                    " with a table whose " + why + " (library '" + table_->library +
+                                    "')");
+}
+
+/// What it answers when it is asked for an extension, or null.
+const void* Instance::ask(const char* extension) const {
+  if (table_->op.extension == nullptr) return nullptr;
   const void* found = nullptr;
   const CallResult result = call(LifeCall::configure, 0, -1, [&](pileus_error*) {
-    found = table_->op.extension(self_, PILEUS_ITEMS_EXTENSION);
+    found = table_->op.extension(self_, extension);
     return pileus_status{PILEUS_OK};
   });
   if (!result.ok()) refuse("extension", result);
-  if (found == nullptr) return;
-  const auto* given = static_cast<const pileus_items_ext*>(found);
-  const bool whole = given->size >= sizeof items_;
-  if (!whole || given->most_per_parcel < 0 || !(given->budget_scale > 0))
-    throw Error(ExitCode::plugin, std::string("plugin ") + table_->op.id + " answers " +
-                                      PILEUS_ITEMS_EXTENSION +
-                                      " with a table whose size, most_per_parcel or budget_scale "
-                                      "is impossible (library '" +
-                                      table_->library + "')");
-  items_ = *given;
+  return found;
+}
+
+/// Errors  Error(ExitCode::plugin) if it says something impossible
+void Instance::take_over_items(const void* answer) {
+  if (answer == nullptr) return;
+  const auto* given = static_cast<const pileus_items_ext*>(answer);
+  const bool whole = given->size >= first_size<pileus_items_ext> && given->size <= largest_row;
+  if (!whole || given->reserved != 0 || given->most_per_parcel < 0 || !(given->budget_scale > 0))
+    refuse_answer(PILEUS_ITEMS_EXTENSION,
+                  "size, reserved member, most_per_parcel or budget_scale is impossible");
+  items_ = widened(*given);
+}
+
+/// Errors  as take_over_items
+void Instance::take_over_state(const void* answer) {
+  if (answer == nullptr) return;
+  state_ext_ = read_state_extension(answer);
+  if (!state_ext_)
+    refuse_answer(PILEUS_STATE_EXTENSION, "size is impossible or which lacks a function");
 }
 
 CallResult Instance::init(const pileus_step& step, const pileus_block& whole) {
@@ -150,6 +168,22 @@ CallResult Instance::init(const pileus_step& step, const pileus_block& whole) {
 
 void Instance::resume() {
   state_ = after(state_, LifeCall::resume);
+}
+
+PrivateState Instance::save_state() const {
+  PrivateState state;
+  const CallResult result = call(LifeCall::save, 0, -1, [&](pileus_error* error) {
+    return collect_state(*state_ext_, self_, state, error);
+  });
+  if (!result.ok()) refuse("save", result);
+  return state;
+}
+
+void Instance::load_state(const PrivateState& saved) {
+  const CallResult result = call(LifeCall::save, 0, -1, [&](pileus_error* error) {
+    return state_ext_->load(self_, saved.format, saved.bytes.data(), saved.bytes.size(), error);
+  });
+  if (!result.ok()) refuse("load", result);
 }
 
 CallResult Instance::prepare(const pileus_step& step, const pileus_block& whole, double& dt_limit) {

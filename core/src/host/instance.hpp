@@ -10,6 +10,7 @@
 #include "host/lifecycle.hpp"
 #include "host/operator_table.hpp"
 #include "host/parameter_values.hpp"
+#include "host/private_state.hpp"
 #include "host/services.hpp"
 
 namespace pileus::host {
@@ -51,6 +52,12 @@ class Instance {
   CallResult init(const pileus_step& step, const pileus_block& whole);
   /// Starts from a checkpoint.
   void resume();
+  /// Whether it has private state that checkpoints must hold (pileus.state/1), as it has said when
+  /// it was configured.
+  bool keeps_state() const { return state_ext_.has_value(); }
+  /// Requires keeps_state(). Errors  Error(ExitCode::plugin) with the plugin's own sentence
+  PrivateState save_state() const;
+  void load_state(const PrivateState& saved);
   CallResult prepare(const pileus_step& step, const pileus_block& whole, double& dt_limit);
   CallResult diagnose(const pileus_step& step, const pileus_block& block,
                       std::int64_t block_index) const;
@@ -60,13 +67,17 @@ class Instance {
  private:
   template <class Hook>
   CallResult call(LifeCall which, std::uint64_t step, std::int64_t block, Hook&& hook) const;
-  void ask_about_items();
+  const void* ask(const char* extension) const;
+  void take_over_items(const void* answer);
+  void take_over_state(const void* answer);
   [[noreturn]] void refuse(const char* phase, const CallResult& result) const;
+  [[noreturn]] void refuse_answer(const char* extension, const char* why) const;
 
   std::shared_ptr<const OperatorTable> table_;
   Services services_;
   std::optional<ParameterValues> values_;  // plugins may keep what they were shown
   pileus_items_ext items_{sizeof(pileus_items_ext), 0, 0, 1.0};
+  std::optional<pileus_state_ext> state_ext_;
   void* self_ = nullptr;
   LifeState state_ = LifeState::none;
 };

@@ -116,9 +116,9 @@ const pileus_module* call_entry(const std::filesystem::path& path, Entry entry) 
     refuse(path, "its entry function threw an exception; it must not fail");
   }
   if (module == nullptr) refuse(path, "its entry function returned NULL");
-  if (module->size < sizeof(pileus_module) || module->size > largest_row) {
+  if (module->size < first_size<pileus_module> || module->size > largest_row) {
     refuse(path, "its module table has size " + std::to_string(module->size) + " where at least " +
-                     std::to_string(sizeof(pileus_module)) + " is needed; " + rebuild);
+                     std::to_string(first_size<pileus_module>) + " is needed; " + rebuild);
   }
   return module;
 }
@@ -134,6 +134,7 @@ void read_module(const pileus_module& module, Library& library) {
       module.abi_minor_needed != library.note.abi_minor_needed) {
     complaints.push_back("its module table and its note state different interface versions");
   }
+  Complaints(complaints).reserved(module.reserved, "its module table");
   if (module.operators == nullptr || *module.operators == nullptr) {
     complaints.push_back(
         "it declares no operators (a describe function that throws has this effect too)");

@@ -40,6 +40,7 @@ void check_identity(const OperatorTable& t, Complaints& c) {
   c.require((op.flags & ~known) == 0, "flags", "hold an unknown bit");
   c.require((op.flags & PILEUS_RESIZES_ITEMS) == 0 || op.scope == PILEUS_GLOBAL, "flags",
             "say that it resizes items, which only an operator of global scope may do");
+  c.reserved(op.reserved, "operator table");
 }
 
 void check_hooks(const OperatorTable& t, Complaints& c) {
@@ -168,6 +169,7 @@ void check_parameter(const pileus_parameter& p, const std::string& place, Compla
   c.optional_text(p.text_fallback, place + " default");
   c.require(words::parameter.knows(p.type), place, "has an unknown type");
   c.require(p.knob <= 1, place, "has a knob that is neither 0 nor 1");
+  c.reserved(p.reserved, place);
   if (p.type == PILEUS_CHOICE) return check_choices(p, place, c);
   if (p.type == PILEUS_TEXT) return;
   c.require(std::isfinite(p.fallback), place, "has a default that is not finite");
@@ -189,6 +191,7 @@ void check_parameter(const pileus_parameter& p, const std::string& place, Compla
 void check_condition(const pileus_condition& row, const std::string& place, const OperatorTable& t,
                      Complaints& c) {
   c.require(words::comparison.knows(row.op), place, "has an unknown comparison");
+  c.reserved(row.reserved, place);
   const std::string quantity(c.text(row.quantity, place + " quantity"));
   const int slot = t.find_quantity(quantity);
   if (slot < 0) {
@@ -334,6 +337,7 @@ void check_rows(OperatorTable& t, Complaints& c) {
   for (const pileus_reference& row : t.references) {
     c.text(row.text, "reference text");
     c.optional_text(row.doi, "reference doi");
+    c.reserved(row.reserved, "reference");
   }
   check_unique_quantities(t.quantities, c);
   check_unique_parameters(t.parameters, c);
@@ -396,9 +400,9 @@ std::optional<When> read_condition(const std::string& text, const OperatorTable&
 OperatorTable read_operator(const pileus_operator* row, std::vector<std::string>& list) {
   OperatorTable t;
   Complaints c(list);
-  if (row->size < sizeof(pileus_operator) || row->size > largest_row) {
+  if (row->size < first_size<pileus_operator> || row->size > largest_row) {
     c.add("operator table", "has size " + std::to_string(row->size) + " where at least " +
-                                std::to_string(sizeof(pileus_operator)) + " is needed");
+                                std::to_string(first_size<pileus_operator>) + " is needed");
     return t;
   }
   t.op = widened(*row);

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/first_size.hpp"
+
 namespace pileus::host {
 
 /// Longest text and longest list a plugin may declare: beyond it, memory was misread.
@@ -29,6 +31,10 @@ class Complaints {
   void optional_text(const char* value, const std::string& place) {
     if (value != nullptr && *value != '\0') text(value, place);
   }
+  /// A later version may give the member a meaning, and zero is the one that it has had always.
+  void reserved(std::uint32_t value, const std::string& place) {
+    require(value == 0, place, "has a reserved member that is not 0");
+  }
 
  private:
   std::vector<std::string>& list_;
@@ -51,7 +57,7 @@ T widened(const T& row) {
 }
 
 /// Copies a zero-terminated list of rows, complaining about lists without end and rows of
-/// impossible size. Rows may grow after version 0.0 but never shrink below it.
+/// impossible size.
 template <class T>
 std::vector<T> copy_rows(const T* const* list, const std::string& place, Complaints& complaints) {
   std::vector<T> rows;
@@ -60,10 +66,10 @@ std::vector<T> copy_rows(const T* const* list, const std::string& place, Complai
       complaints.add(place, "has no end: its list must close with a null pointer");
       return rows;
     }
-    if ((*list)->size < sizeof(T) || (*list)->size > largest_row) {
+    if ((*list)->size < first_size<T> || (*list)->size > largest_row) {
       complaints.add(place + " " + std::to_string(rows.size()),
                      "has size " + std::to_string((*list)->size) + " where at least " +
-                         std::to_string(sizeof(T)) + " is needed: set it to sizeof the row");
+                         std::to_string(first_size<T>) + " is needed: set it to sizeof the row");
       return rows;
     }
     rows.push_back(widened(**list));

@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "host/breadcrumb.hpp"
+#include "host/error_record.hpp"
 #include "host/floating_point.hpp"
 
 namespace pileus::host {
@@ -123,7 +124,7 @@ pileus_status loop_in_parallel(const pileus_host*, std::int64_t n, std::int64_t 
         chunk);
     return PILEUS_OK;
   } catch (const ChunkFailure& failure) {
-    if (error != nullptr) *error = failure.error;
+    give_error(failure.error, error);
     return failure.status;
   } catch (...) {
     return PILEUS_E_INTERNAL;
@@ -162,8 +163,8 @@ void Services::write_log(const pileus_host* host, std::uint32_t level, const cha
 }
 
 int Services::answer_should_stop(const pileus_host* host) {
-  const std::atomic<bool>* stop = self(host).lent_.stop;
-  return stop != nullptr && stop->load(std::memory_order_relaxed) ? 1 : 0;
+  bool (*const stop)() = self(host).lent_.stop;
+  return stop != nullptr && stop() ? 1 : 0;
 }
 
 const void* Services::find_extension(const pileus_host* host, const char* id) {

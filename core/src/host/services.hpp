@@ -21,7 +21,7 @@ struct Span {
 
 /// What the core lends to an instance beside the services themselves; all may be null.
 struct Lent {
-  const std::atomic<bool>* stop = nullptr;       // answers should_stop
+  bool (*stop)() = nullptr;                      // answers should_stop, on any thread
   const pileus_mesh_ext* mesh = nullptr;         // the extension pileus.mesh/1
   const pileus_item_lists_ext* items = nullptr;  // the extension pileus.item_lists/1
 };

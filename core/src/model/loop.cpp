@@ -13,6 +13,7 @@
 #include "model/activation_record.hpp"
 #include "model/failure_files.hpp"
 #include "model/initial_state.hpp"
+#include "model/private_state_record.hpp"
 #include "model/provenance.hpp"
 #include "output/posix_file.hpp"
 #include "planner/plan_text.hpp"
@@ -37,6 +38,7 @@ coupling::SequenceOptions sequence_options(const scene::Scene& scene) {
   coupling::SequenceOptions options;
   options.coupling = scene.coupling;
   options.seed = scene.seed;
+  options.stop = stop_requested;
   for (const auto& [name, field] : scene.initial.scalars) options.initial.push_back(name);
   return options;
 }
@@ -101,7 +103,13 @@ bool Loop::resume() {
   sequence_.surface().restore(checkpoint.data.arrays);
   restore_activations(checkpoint.data, physics_);
   activations_reported_ = physics_.activations().size();
-  sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt});
+  try {
+    sequence_.resume({checkpoint.step, checkpoint.time, checkpoint.dt},
+                     private_states_of(checkpoint.data));
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("cannot continue from the checkpoint '{}': {}",
+                                          path->string(), error.what()));
+  }
   sequence_.restore_books(checkpoint.data.arrays.at("books"));
   record_->restore(checkpoint.data, checkpoint.time);
   diagnostics_->restore(checkpoint.data);
@@ -282,6 +290,7 @@ void Loop::checkpoint() {
   checkpoint.data.arrays["books"] = sequence_.books();
   checkpoint.data.arrays.merge(sequence_.surface().named_values());
   save_activations(physics_, checkpoint.data);
+  save_private_states(sequence_, checkpoint.data);
   checkpoint.data.texts["scene"] = scene_.resolved_yaml;
   checkpoint.data.texts["version"] = std::string(build_record().version);
   checkpoint.data.texts["commit"] = std::string(build_record().commit);

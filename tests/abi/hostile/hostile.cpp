@@ -13,7 +13,7 @@
 #endif
 
 #ifndef HOSTILE_ENTRY
-#define HOSTILE_ENTRY pileus_module_v0
+#define HOSTILE_ENTRY pileus_module_v1
 #endif
 
 #ifndef HOSTILE_MAGIC
@@ -184,6 +184,7 @@ pileus_operator make_operator() {
       is("throws_in_loop") || is("crashes_in_loop") || is("changes_arithmetic_in_loop");
   op.scope = is("unknown_scope") ? 9 : loops ? PILEUS_GLOBAL : PILEUS_LOCAL;
   op.form = PILEUS_FLOW;
+  op.reserved = is("reserved_in_use") ? 1u : 0u;
   op.flags = is("unknown_flag") ? 1u << 30 : 0u;
   op.id = is("malformed_id") ? "Hostile Plugin"
           : is("foreign_id") ? "org.example.other"

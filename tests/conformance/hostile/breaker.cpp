@@ -66,6 +66,13 @@ const pileus_selftest_ext own_tests = {
       return pileus_status{breaks("failing_selftest") ? PILEUS_E_INTERNAL : PILEUS_OK};
     }};
 
+/// Private state that is neither saved nor loaded.
+const pileus_state_ext nothing_kept = {sizeof(pileus_state_ext), 1,
+                                       [](void*, int (*)(void*, const void*, std::size_t), void*,
+                                          pileus_error*) { return pileus_status{PILEUS_OK}; },
+                                       [](void*, std::uint32_t, const void*, std::size_t,
+                                          pileus_error*) { return pileus_status{PILEUS_OK}; }};
+
 /// What the operators here have in common.
 template <class Self>
 class Breaker : public pileus::Operator<Self> {
@@ -104,6 +111,8 @@ class Breaker : public pileus::Operator<Self> {
   }
 
   const void* extension(const char* id) const {
+    if (breaks("state_forgotten") && std::string_view(id) == PILEUS_STATE_EXTENSION)
+      return &nothing_kept;
     return std::string_view(id) == PILEUS_SELFTEST_EXTENSION ? &own_tests : nullptr;
   }
 
@@ -141,7 +150,8 @@ class Breaker : public pileus::Operator<Self> {
     if (step.dt == 0) y = x;
     if (breaks("trifle_per_call") && step.dt > 0) y += 1e-9;
     if (breaks("block_size_seen") && block.count() == 1) y *= last_bits;
-    if (breaks("steps_counted")) y += 1e-6 * steps_ * step.dt * step.dt;
+    if (breaks("steps_counted") || breaks("state_forgotten"))
+      y += 1e-6 * steps_ * step.dt * step.dt;
     return std::clamp(y, 0.0, breaks("amount_not_shared") ? 1e3 : 1.0);
   }
 

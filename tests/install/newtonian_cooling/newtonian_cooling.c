@@ -124,7 +124,7 @@ static const pileus_operator cooling = {
     .apply = apply,
     .destroy = destroy};
 
-PILEUS_EXPORT const pileus_module* pileus_module_v0(void) {
+PILEUS_EXPORT const pileus_module* pileus_module_v1(void) {
   static const pileus_operator* const operators[] = {&cooling, NULL};
   static const pileus_module module = {.size = sizeof(pileus_module),
                                        .abi_minor_built = PILEUS_ABI_MINOR,

@@ -86,6 +86,7 @@ TEST_F(ServicesTest, a_number_of_values_whose_bytes_overflow_is_refused) {
 
 TEST_F(ServicesTest, a_failed_chunk_fails_the_loop_with_its_record) {
   pileus_error error{};
+  error.size = sizeof error;
   const auto body = [](void*, std::int64_t begin, std::int64_t,
                        pileus_error* record) -> pileus_status {
     if (begin < 300) return PILEUS_OK;
@@ -94,6 +95,30 @@ TEST_F(ServicesTest, a_failed_chunk_fails_the_loop_with_its_record) {
   };
   EXPECT_EQ(host().parallel_for(&host(), 1000, 100, body, nullptr, &error), PILEUS_E_DIVERGED);
   EXPECT_EQ(error.uid, 300u);
+}
+
+/// Records of plugins of another version may be shorter than the core's.
+TEST_F(ServicesTest, a_failed_chunk_leaves_alone_what_lies_behind_the_record) {
+  pileus_error error{};
+  error.size = offsetof(pileus_error, dt_hint);
+  error.dt_hint = 7;
+  const auto body = [](void*, std::int64_t, std::int64_t, pileus_error* record) {
+    record->value = 3;
+    record->dt_hint = 5;
+    return pileus_status{PILEUS_E_DIVERGED};
+  };
+  EXPECT_EQ(host().parallel_for(&host(), 10, 10, body, nullptr, &error), PILEUS_E_DIVERGED);
+  EXPECT_EQ(error.value, 3);
+  EXPECT_EQ(error.dt_hint, 7);
+  EXPECT_EQ(error.size, offsetof(pileus_error, dt_hint));
+}
+
+TEST_F(ServicesTest, says_whether_the_run_is_to_stop) {
+  EXPECT_EQ(host().should_stop(&host()), 0);
+  Lent lent;
+  lent.stop = [] { return true; };
+  const Services asked("test", lent);
+  EXPECT_EQ(asked.table().should_stop(&asked.table()), 1);
 }
 
 TEST(Block, refuses_what_describe_left_out) {
