@@ -2,6 +2,7 @@
 import sys
 from pathlib import Path
 
+import frozen
 import include_graph
 import repository
 import tree
@@ -13,6 +14,7 @@ CHECKS = {
     "plugin_names_in_core": repository.plugin_names_in_core,
     "links": repository.broken_links,
     "scenes": repository.scenes,
+    "frozen_contract": frozen.frozen_contract,
     "registered_tests": repository.unregistered_tests,
 }
 

@@ -1,9 +1,11 @@
 """Every check finds the mistake it is there for: each runs on a small tree that has it."""
+import hashlib
 import json
 import tempfile
 import unittest
 from pathlib import Path
 
+import frozen
 import include_graph
 import repository
 
@@ -73,6 +75,32 @@ class Checks(unittest.TestCase):
     def test_incomplete_scene(self):
         self.write("configs/scenes/wave/wave.yaml", "name: wave\n")
         self.found(repository.scenes, "has no README.md", "names no schema")
+
+    def freeze(self):
+        """A tree whose contract is released: header, layout, and their digests."""
+        header = "#define PILEUS_ABI_MAJOR 1u\n#define PILEUS_ABI_MINOR 0u\n"
+        layout = "# minor 0\nsize 4\n"
+        self.write("core/include/pileus/abi.h", header)
+        self.write("tests/abi/v1_0/abi.h", header)
+        self.write("tests/abi/layout_v1.txt", layout + "# minor 1\nmore 8\n")
+        digests = {"abi.h": header, "layout_v1.txt:minor 0": layout}
+        self.write("tests/abi/v1_0/SHA256SUMS", "".join(
+            f"{hashlib.sha256(text.encode()).hexdigest()}  {name}\n"
+            for name, text in digests.items()))
+        return header
+
+    def test_released_contract(self):
+        header = self.freeze()
+        self.found(frozen.frozen_contract)
+        self.write("core/include/pileus/abi.h", header + "/* more */\n")
+        self.found(frozen.frozen_contract, "is no longer")
+        self.write("tests/abi/v1_0/abi.h", header + "/* more */\n")
+        self.found(frozen.frozen_contract, "v1_0/abi.h: was released and has changed")
+        self.write("tests/abi/v1_0/abi.h", header)
+        self.write("core/include/pileus/abi.h", header.replace("MINOR 0u", "MINOR 1u"))
+        self.found(frozen.frozen_contract)
+        self.write("tests/abi/layout_v1.txt", "# minor 0\nsize 8\n# minor 1\nmore 8\n")
+        self.found(frozen.frozen_contract, "layout_v1.txt:minor 0: was released")
 
     def test_unregistered_test(self):
         self.write("tests/unit/a.cpp")
