@@ -1,28 +1,46 @@
 #!/usr/bin/env bash
-# one_node.sh PROGRAM SOURCE WORK: starts a Slurm of one node in WORK, submits a sweep of four
-# members, one of which breaks down, and collects it. Ends with 77 where Slurm is not installed.
+# A Slurm of one node for trying job arrays where there is no cluster.
+#
+#   one_node.sh start FOLDER   starts it in FOLDER; prints the line that tells a shell of it
+#   one_node.sh stop FOLDER    ends its jobs and the two daemons
+#
+# As root, with the Debian package slurm-wlm. Exit code 77 where that is not so.
 set -euo pipefail
-program=$1 source=$2 work=$3
+if [ $# -ne 2 ] || { [ "$1" != start ] && [ "$1" != stop ]; }; then
+  echo "usage: one_node.sh start|stop FOLDER" >&2
+  exit 2
+fi
+command=$1
 export PATH=$PATH:/usr/sbin:/sbin
-
 for tool in slurmctld slurmd sbatch sinfo; do
   if ! command -v "$tool" >/dev/null; then
-    echo "skipped: there is no $tool (Debian package slurm-wlm)"
+    echo "there is no $tool (Debian package slurm-wlm)" >&2
     exit 77
   fi
 done
 if [ "$(id -u)" -ne 0 ]; then
-  echo "skipped: a node that runs jobs needs root"
+  echo "a node that runs jobs needs root" >&2
   exit 77
 fi
+mkdir -p "$2"
+folder=$(cd "$2" && pwd)
+export SLURM_CONF=$folder/slurm.conf
 
-rm -rf "$work"
-mkdir -p "$work"/{state,spool}
-cd "$work"
-host=$(hostname -s)
-controller=$((20000 + $$ % 20000))
-cat >slurm.conf <<CONF
-ClusterName=ci
+stop() {
+  scancel --user="$(id -un)" --full 2>/dev/null || true
+  sleep 1
+  for daemon in slurmd slurmctld; do
+    if [ -s "$folder/$daemon.pid" ]; then kill "$(cat "$folder/$daemon.pid")" 2>/dev/null || true; fi
+  done
+}
+
+write_configuration() {
+  local host controller
+  host=$(hostname -s)
+  controller=$((20000 + $$ % 20000))
+  mkdir -p "$folder"/{state,spool}
+  cat >"$SLURM_CONF" <<CONF
+ClusterName=one
 SlurmctldHost=$host(127.0.0.1)
 SlurmctldPort=$controller
 SlurmdPort=$((controller + 1))
@@ -39,69 +57,34 @@ AccountingStorageType=accounting_storage/none
 MpiDefault=none
 ReturnToService=2
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
-StateSaveLocation=$work/state
-SlurmdSpoolDir=$work/spool
-SlurmctldPidFile=$work/slurmctld.pid
-SlurmdPidFile=$work/slurmd.pid
-SlurmctldLogFile=$work/slurmctld.log
-SlurmdLogFile=$work/slurmd.log
-NodeName=$host NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN
-PartitionName=ci Nodes=$host Default=YES MaxTime=INFINITE State=UP
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd.pid
+SlurmctldLogFile=$folder/slurmctld.log
+SlurmdLogFile=$folder/slurmd.log
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=1000 State=UNKNOWN
+PartitionName=one Nodes=$host Default=YES MaxTime=INFINITE State=UP
 CONF
-export SLURM_CONF=$work/slurm.conf
-
-stop() {
-  scancel --user="$(id -un)" --full 2>/dev/null || true
-  sleep 1
-  for daemon in slurmd slurmctld; do
-    if [ -s "$work/$daemon.pid" ]; then kill "$(cat "$work/$daemon.pid")" 2>/dev/null || true; fi
-  done
 }
-trap stop EXIT
 
+is_idle() { [ "$(sinfo --noheader --format=%t 2>/dev/null)" = idle ]; }
+
+if [ "$command" = stop ]; then
+  stop
+  exit 0
+fi
+write_configuration
 slurmctld -c
 slurmd -c
 for ((i = 0; i < 60; ++i)); do
-  if [ "$(sinfo --noheader --format=%t 2>/dev/null)" = idle ]; then break; fi
+  if is_idle; then
+    echo "export SLURM_CONF=$SLURM_CONF"
+    exit 0
+  fi
   sleep 0.5
 done
-if [ "$(sinfo --noheader --format=%t)" != idle ]; then
-  tail -n 20 slurmctld.log slurmd.log
-  echo "the node does not become idle"
-  exit 1
-fi
-
-cat >sweep.yaml <<SWEEP
-scene: $source/configs/scenes/internal_wave/internal_wave_small.yaml
-set: {domain.cells: [8, 8, 4], time.end: 1 s}
-product: [{key: time.step.fixed, values: [0.1, 0.2, 1e-30, 0.05]}]
-SWEEP
-"$program" sweep sweep.yaml --out out --jobs 2 --slurm >words.txt
-cat words.txt
-grep -q '^Submitted batch job ' words.txt
-for ((i = 0; i < 240; ++i)); do
-  if [ -z "$(squeue --noheader)" ]; then break; fi
-  sleep 0.5
-done
-
-code=0
-"$program" sweep sweep.yaml --out out --collect --no-pictures >collected.txt || code=$?
-cat collected.txt
-[ "$code" -eq 4 ]
-grep -q '^3 of 4 members done, 1 failed$' collected.txt
-grep -q 'member 0002 (fixed 1e-30) failed with exit code 4' collected.txt
-[ -s out/ensemble.nc ]
-
-# What broke down is mended and the array submitted again: only that member runs.
-sed -i 's/1e-30/0.025/' sweep.yaml
-before=$(stat --format=%y out/members/0000/summary.json)
-"$program" sweep sweep.yaml --out out --slurm
-for ((i = 0; i < 240; ++i)); do
-  if [ -z "$(squeue --noheader)" ]; then break; fi
-  sleep 0.5
-done
-"$program" sweep sweep.yaml --out out --collect --no-pictures >collected.txt
-cat collected.txt
-grep -q '^4 of 4 members done$' collected.txt
-[ "$before" = "$(stat --format=%y out/members/0000/summary.json)" ]
-echo "a job array of four members ran, one of them again"
+tail -n 20 "$folder"/slurmctld.log "$folder"/slurmd.log >&2
+stop
+echo "the node does not become idle" >&2
+exit 1
