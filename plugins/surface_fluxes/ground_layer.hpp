@@ -90,7 +90,8 @@ struct PointSums {
 
 class GroundLayer {
  public:
-  /// `near` has to hold count_below(…, reach) indices; they are filled in.
+  /// `reach`: the height below which every shape of this layer ends. `near` has to hold
+  /// count_below(…, reach) indices; they are filled in.
   GroundLayer(const Ground& ground, const ParcelArrays& parcels, double reach,
               std::span<std::int64_t> near)
       : ground_(ground), parcels_(parcels), near_(near) {
@@ -106,10 +107,11 @@ class GroundLayer {
   /// A point with less than this part of a cell has no parcels to speak of.
   static constexpr double least_part = 1e-3;
 
-  /// S_j of every point. Those with next to no parcels reach twice as far, and twice that, up to
-  /// the height of the domain. Returns how many did.
-  std::uint64_t weigh(VerticalWeight shape, const PointSums& sums) {
-    std::fill(sums.reach.begin(), sums.reach.end(), ground_.depth);
+  /// S_j of every point, for a shape that ends at (tent: has its peak at) the height `reach`.
+  /// Points with next to no parcels reach twice as far, and twice that, up to the height of the
+  /// domain. Returns how many did.
+  std::uint64_t weigh(VerticalWeight shape, double reach, const PointSums& sums) {
+    std::fill(sums.reach.begin(), sums.reach.end(), reach);
     std::fill(sums.volume.begin(), sums.volume.end(), 0.0);
     each(shape, sums.reach, [&](std::int64_t p, std::size_t j, double w) {
       sums.volume[j] += parcels_.volume[p] * w;

@@ -10,7 +10,7 @@ namespace pileus::surface {
 
 struct Parameters {
   Param scalar_flux, heat_flux, moisture_flux, buoyancy_flux, theta, humidity;
-  Param momentum, friction_velocity, stress;
+  Param momentum, friction_velocity, stress, stress_depth;
   Param roughness, roughness_length, heat_roughness_length, charnock, viscosity;
   Param momentum_coefficient, heat_coefficient, moisture_coefficient, coefficient_height;
   Param functions, von_karman, gravity, reference_temperature, gustiness, gust_depth;
@@ -90,6 +90,16 @@ struct Parameters {
                  .doc(
                      "exchange with the air of each point, or that of the mean over the plane, "
                      "distributed as Moeng 1984 does");
+    static constexpr double ladder[] = {1.0, 2.0, 3.0, 4.0,
+                                        std::numeric_limits<double>::quiet_NaN()};
+    stress_depth =
+        d.integer("stress_depth_in_cells", 1)
+            .range(1, 32)
+            .knob(ladder)
+            .when("momentum != none")
+            .doc(
+                "height, in cells, up to which eddies that the mesh does not resolve hand "
+                "on a part of the stress");
   }
   void describe_roughness(Declaration& d) {
     roughness = d.choice("roughness", {"given", "charnock"})

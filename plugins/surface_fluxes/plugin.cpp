@@ -92,7 +92,7 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
           std::max(friction_velocity_(step.time), friction_velocity_(step.time + step.dt));
       drag = u * std::max(1.0, u / settings_.similarity.least_wind);
     }
-    return drag > 0 ? std::min(limit, factor * ground.depth / drag) : limit;
+    return drag > 0 ? std::min(limit, factor * stress_depth(ground) / drag) : limit;
   }
 
   void apply(const pileus_step& step, Block block) const {
@@ -101,15 +101,15 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
     PointFields f(block, ground.points());
     const ParcelArrays parcels{block.in(q_.x), block.has(q_.y) ? block.in(q_.y) : nullptr,
                                block.in(q_.z), block.in(q_.volume), block.count()};
-    const double reach = needs_air(block) ? 2 * ground.depth : ground.depth;
+    const double reach = reach_of(block, ground);
     const std::size_t near = GroundLayer::count_below(ground, parcels, reach);
     GroundLayer layer(ground, parcels, reach,
                       {reinterpret_cast<std::int64_t*>(block.scratch(near).data()), near});
     std::uint64_t repairs = 0;
-    if (needs_air(block)) repairs += read_air(block, layer, f);
+    if (needs_air(block)) repairs += read_air(block, ground, layer, f);
     if (settings_.momentum != Momentum::none) read_wind(block, ground, f);
     find_fluxes(step, block, ground, f);
-    repairs += layer.weigh(VerticalWeight::ramp, f.sums);
+    repairs += layer.weigh(VerticalWeight::ramp, ground.depth, f.sums);
     heat(step, block, ground, layer, f);
     repairs += moisten(step, block, ground, layer, f);
     if (settings_.momentum != Momentum::none) repairs += drag(step, block, ground, layer, f);
@@ -133,6 +133,15 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
   }
   bool needs_air(const Block& block) const {
     return settings_.scalar_flux != ScalarFlux::prescribed || is(moistened(block));
+  }
+  double stress_depth(const Ground& ground) const {
+    return std::min(static_cast<double>(integer(parameters_.stress_depth)) * ground.depth,
+                    ground.height);
+  }
+  /// Parcels below it take part.
+  double reach_of(const Block& block, const Ground& ground) const {
+    const double read = needs_air(block) ? 2 * ground.depth : ground.depth;
+    return settings_.momentum == Momentum::none ? read : std::max(read, stress_depth(ground));
   }
 
   void check(const Block& block, const Ground& ground) const {
@@ -158,8 +167,9 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
   }
 
   /// Temperature, humidity, and the wind where no drag asks for the mesh, around z_1.
-  std::uint64_t read_air(const Block& block, GroundLayer& layer, PointFields& f) const {
-    const std::uint64_t widened = layer.weigh(VerticalWeight::tent, f.sums);
+  std::uint64_t read_air(const Block& block, const Ground& ground, GroundLayer& layer,
+                         PointFields& f) const {
+    const std::uint64_t widened = layer.weigh(VerticalWeight::tent, ground.depth, f.sums);
     const double reference = settings_.similarity.reference_temperature;
     const Slot warm = heated(block);
     std::fill(f.theta.begin(), f.theta.end(), reference);
@@ -315,16 +325,18 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
     block.out(q_.mean_wind_x)[0] += mean_wind_change(ground, f.stress_x, step.dt);
     if (block.has(q_.mean_wind_y))
       block.out(q_.mean_wind_y)[0] += mean_wind_change(ground, f.stress_y, step.dt);
-    if (block.has(q_.vorticity_z)) {  // still with the weights of the ramp
+    const double depth = stress_depth(ground);
+    if (block.has(q_.vorticity_z)) {
+      layer.weigh(VerticalWeight::ramp, depth, f.sums);
       vertical_vorticity_amounts(ground, f.stress_x, f.stress_y, step.dt, f.amount);
       share_out(f);
       layer.add(VerticalWeight::ramp, f.sums, f.share, block.out(q_.vorticity_z));
     }
-    const std::uint64_t widened = layer.weigh(VerticalWeight::box, f.sums);
+    const std::uint64_t widened = layer.weigh(VerticalWeight::box, depth, f.sums);
     const auto turn = [&](Slot slot, std::span<const double> stress, double sign) {
       if (!block.has(slot)) return;
       for (std::size_t j = 0; j < stress.size(); ++j)
-        f.amount[j] = sign * vorticity_amount(ground, stress[j], step.dt);
+        f.amount[j] = sign * vorticity_amount(ground, depth, stress[j], step.dt);
       share_out(f);
       layer.add(VerticalWeight::box, f.sums, f.share, block.out(slot));
     };

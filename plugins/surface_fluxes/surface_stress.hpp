@@ -1,8 +1,8 @@
-// The stress of the ground as a force in the lowest cell, in the variables of the parcels.
+// The stress of the ground as a force in the air next to it, in the variables of the parcels.
 //
-//   F = −(2/h)(1 − z/h) τ for z < h, with ∫F dz = −τ; its curl and its mean are
-//   dη/dt = ∂F_x/∂z = 2τ_x/h²,  dξ/dt = −∂F_y/∂z = −2τ_y/h²   (z < h)
-//   dζ/dt = −(2/h)(1 − z/h)(∂τ_y/∂x − ∂τ_x/∂y),   d<u>/dt = −<τ>/H
+//   F = −(2/d)(1 − z/d) τ for z < d, with ∫F dz = −τ; its curl and its mean are
+//   dη/dt = ∂F_x/∂z = 2τ_x/d²,  dξ/dt = −∂F_y/∂z = −2τ_y/d²   (z < d)
+//   dζ/dt = −(2/d)(1 − z/d)(∂τ_y/∂x − ∂τ_x/∂y),   d<u>/dt = −<τ>/H
 //
 // In two dimensions the one component ∂w/∂x − ∂u/∂z is −η.
 #pragma once
@@ -41,9 +41,9 @@ inline double distributed_flux(double transfer, double speed_ratio, double at_su
   return transfer * (speed_ratio * (at_surface - mean) + mean - here);
 }
 
-/// ∫∂_z F_x dV of a point over dt: what η gains in its lowest cell, m3 s-1. −η in two dimensions.
-inline double vorticity_amount(const Ground& ground, double stress, double dt) {
-  return dt * 2.0 * stress * ground.area() / ground.depth;
+/// ∫∂_z F_x dV of a point over dt: what η gains below `depth`, m3 s-1. −η in two dimensions.
+inline double vorticity_amount(const Ground& ground, double depth, double stress, double dt) {
+  return dt * 2.0 * stress * ground.area() / depth;
 }
 
 /// ∫(∂_x F_y − ∂_y F_x) dV of every point over dt, by centred differences of the stress over the

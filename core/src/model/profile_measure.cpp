@@ -49,6 +49,7 @@ double mean_of(const std::vector<double>& values) {
 
 /// Slope of the least-squares line.
 double slope_of(const Points& points) {
+  if (points.height.empty()) return nan;
   const double z0 = mean_of(points.height), v0 = mean_of(points.value);
   double covariance = 0, variance = 0;
   for (std::size_t i = 0; i < points.height.size(); ++i) {
@@ -57,6 +58,17 @@ double slope_of(const Points& points) {
     variance += z * z;
   }
   return variance > 0 ? covariance / variance : nan;
+}
+
+/// Values over the logarithm of the height above `bottom`; without what lies there.
+Points over_logarithm(const Points& points, double bottom) {
+  Points result;
+  for (std::size_t i = 0; i < points.height.size(); ++i) {
+    if (!(points.height[i] > bottom)) continue;
+    result.height.push_back(std::log(points.height[i] - bottom));
+    result.value.push_back(points.value[i]);
+  }
+  return result;
 }
 
 double nonlinearity_of(const Points& points) {
@@ -111,6 +123,8 @@ double measure(const Profile& profile, ProfileMeasure what, double low, double h
       return points.height[static_cast<std::size_t>(largest - values.begin())];
     case ProfileMeasure::slope:
       return slope_of(points);
+    case ProfileMeasure::logarithmic_slope:
+      return slope_of(over_logarithm(points, profile.bottom));
     default:
       return nonlinearity_of(points);
   }

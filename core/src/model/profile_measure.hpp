@@ -29,7 +29,8 @@ using ProfileMeasure = scene::SlabValueControl::Measure;
 /// The levels in [low, high] (m) that hold numbers count; NaN where none does, and where fewer than
 /// two define a straight line.
 /// `slope`: of the least-squares line (per m). `nonlinearity`: largest deviation from that line
-/// over its largest magnitude.
+/// over its largest magnitude. `logarithmic_slope`: of the least-squares line over ln of the height
+/// above the profile's bottom, without the bottom itself.
 double measure(const Profile& profile, ProfileMeasure what, double low, double high);
 
 }  // namespace pileus::model

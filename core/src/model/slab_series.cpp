@@ -35,8 +35,9 @@ std::string units_of(ProfileMeasure measure, const std::string& units) {
 }
 
 const std::vector<std::string>& measure_words() {
-  static const std::vector<std::string> words = {
-      "value", "mean", "min", "max", "height_of_min", "height_of_max", "slope", "nonlinearity"};
+  static const std::vector<std::string> words = {"value", "mean",          "min",
+                                                 "max",   "height_of_min", "height_of_max",
+                                                 "slope", "nonlinearity",  "logarithmic_slope"};
   return words;
 }
 
@@ -120,8 +121,9 @@ SlabSeries::Asked SlabSeries::asked(const scene::SlabValueControl& control, doub
   const double spacing = slabs_.spacing();
   const double levels = std::floor((asked.high - bottom) / spacing + 1e-9) -
                         std::ceil((asked.low - bottom) / spacing - 1e-9) + 1;
-  const bool line =
-      control.measure == ProfileMeasure::slope || control.measure == ProfileMeasure::nonlinearity;
+  const bool line = control.measure == ProfileMeasure::slope ||
+                    control.measure == ProfileMeasure::nonlinearity ||
+                    control.measure == ProfileMeasure::logarithmic_slope;
   if (control.measure != ProfileMeasure::value && levels < (line ? 2 : 1))
     refuse(control, fmt::format("needs at least {} between its heights, which are {:.6g} m and "
                                 "{:.6g} m; levels are {:.6g} m apart.",

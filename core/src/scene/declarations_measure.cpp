@@ -233,10 +233,11 @@ const Table& slab_value_table() {
                    .must(),
                choice("measure", &SlabValueControl::measure,
                       {"value", "mean", "min", "max", "height_of_min", "height_of_max", "slope",
-                       "nonlinearity"},
+                       "nonlinearity", "logarithmic_slope"},
                       "The value at one height, linear between levels; a mean, an extremum or its "
                       "height over levels; the slope of the least-squares line, or the largest "
-                      "deviation from that line over the line's largest magnitude."),
+                      "deviation from that line over the line's largest magnitude; the slope of "
+                      "the line over the logarithm of the height above the bottom."),
                value("height", &SlabValueControl::height, "m",
                      "Height at which the value is taken.")
                    .otherwise("none"),

@@ -294,7 +294,17 @@ struct WaterPathControl {
 
 /// A number of a profile of slab statistics, as a diagnostic of its own: `name`.
 struct SlabValueControl {
-  enum class Measure { value, mean, min, max, height_of_min, height_of_max, slope, nonlinearity };
+  enum class Measure {
+    value,
+    mean,
+    min,
+    max,
+    height_of_min,
+    height_of_max,
+    slope,
+    nonlinearity,
+    logarithmic_slope
+  };
   std::string name, variable;
   Measure measure = Measure::value;
   std::optional<double> height;         // m, for value

@@ -122,14 +122,16 @@ TEST(SurfaceFluxes, WaterStaysPositiveAndIsOwed) {
 }
 
 /// A uniform wind over a fixed C_D: H d<u>/dt = −C_D U u and the vorticity that holds the rest of
-/// the momentum at z < h has the integral 2τ/h · area, so that the wind above is as before.
-TEST(SurfaceFluxes, DragTakesTheStressFromTheWind) {
+/// the momentum at z < d has the integral 2τ/d · area, so that the wind above is as before.
+void expect_drag_up_to(int cells) {
+  const double depth = 50 * cells;
   const double coefficient = 1.5e-3, speed = std::hypot(6.0, -2.5);
   Air<3> air(box,
              {{"momentum", "bulk"},
               {"momentum_coefficient", "1.5e-3"},
               {"coefficient_height", "50 m"},
-              {"roughness_length", "0.01 m"}},
+              {"roughness_length", "0.01 m"},
+              {"stress_depth_in_cells", std::to_string(cells)}},
              {"buoyancy"}, wind(6, -2.5));
   air.mesh.mean_wind = {6, -2.5};
   for (int c = 0; c < 3; ++c) std::fill_n(air.store.vorticity(c), air.store.size(), 0.0);
@@ -139,12 +141,18 @@ TEST(SurfaceFluxes, DragTakesTheStressFromTheWind) {
   const double tau_x = coefficient * speed * 6, tau_y = coefficient * speed * -2.5;
   EXPECT_NEAR(air.mesh.mean_wind[0] - 6, -tau_x * dt / 500, 1e-13);
   EXPECT_NEAR(air.mesh.mean_wind[1] + 2.5, -tau_y * dt / 500, 1e-13);
-  EXPECT_NEAR(air.total(air.store.vorticity(1)), dt * 2 * tau_x / 50 * area(box), 1e-9);
-  EXPECT_NEAR(air.total(air.store.vorticity(0)), -dt * 2 * tau_y / 50 * area(box), 1e-9);
+  EXPECT_NEAR(air.total(air.store.vorticity(1)), dt * 2 * tau_x / depth * area(box), 1e-9);
+  EXPECT_NEAR(air.total(air.store.vorticity(0)), -dt * 2 * tau_y / depth * area(box), 1e-9);
   EXPECT_EQ(air.total(air.store.vorticity(2)), 0);
   for (std::size_t p = 0; p < air.store.size(); ++p)
-    ASSERT_EQ(air.store.vorticity(1)[p] != 0, air.store.position(2)[p] < 50);
+    ASSERT_EQ(air.store.vorticity(1)[p] != 0, air.store.position(2)[p] < depth);
   EXPECT_NEAR(air.ground("surface_friction_velocity")[0], std::sqrt(coefficient) * speed, 1e-12);
+}
+TEST(SurfaceFluxes, DragTakesTheStressFromTheWind) {
+  expect_drag_up_to(1);
+}
+TEST(SurfaceFluxes, DragMayReachOverSeveralCells) {
+  expect_drag_up_to(3);
 }
 
 /// Uneven drag turns air about the vertical, by nothing in sum.

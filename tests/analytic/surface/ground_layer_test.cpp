@@ -76,7 +76,7 @@ TEST(GroundLayer, GivesExactlyWhatComes) {
     const Cloud cloud = random_cloud(4000, 1);
     Layer l(ground, cloud, ground.depth);
     Sums sums(ground.points());
-    EXPECT_EQ(l.layer.weigh(shape, sums.spans()), 0u);
+    EXPECT_EQ(l.layer.weigh(shape, ground.depth, sums.spans()), 0u);
     const std::vector<double> amounts = random_amounts(2, -1, 3);
     std::vector<double> values(cloud.x.size(), 0.0);
     l.layer.add(shape, sums.spans(), shares(amounts, sums), values.data());
@@ -95,7 +95,7 @@ TEST(GroundLayer, GivesToTheParcelsAround) {
   const Cloud cloud = random_cloud(4000, 3);
   Layer l(ground, cloud, ground.depth);
   Sums sums(ground.points());
-  l.layer.weigh(VerticalWeight::ramp, sums.spans());
+  l.layer.weigh(VerticalWeight::ramp, ground.depth, sums.spans());
   std::vector<double> amounts(ground.points(), 0.0);
   amounts[0] = 1;
   std::vector<double> values(cloud.x.size(), 0.0);
@@ -119,7 +119,7 @@ TEST(GroundLayer, ReachesFurtherWhereThereAreNoParcels) {
   for (const VerticalWeight shape : {VerticalWeight::ramp, VerticalWeight::box}) {
     Layer l(ground, cloud, ground.depth);
     Sums sums(ground.points());
-    EXPECT_EQ(l.layer.weigh(shape, sums.spans()), ground.points());
+    EXPECT_EQ(l.layer.weigh(shape, ground.depth, sums.spans()), ground.points());
     for (const double reach : sums.reach) EXPECT_EQ(reach, 100);
     const std::vector<double> amounts = random_amounts(5, 0, 1);
     std::vector<double> values(cloud.x.size(), 0.0);
@@ -135,13 +135,13 @@ TEST(GroundLayer, EndsWithoutParcels) {
   for (double& x : cloud.x) x = ground.origin[0] + 0.1 * (x - ground.origin[0]);
   Layer l(ground, cloud, ground.depth);
   Sums sums(ground.points());
-  EXPECT_GT(l.layer.weigh(VerticalWeight::ramp, sums.spans()), 0u);
+  EXPECT_GT(l.layer.weigh(VerticalWeight::ramp, ground.depth, sums.spans()), 0u);
   EXPECT_EQ(sums.reach[0], ground.depth);
   EXPECT_EQ(sums.reach[3], ground.height);
   EXPECT_EQ(sums.volume[3], 0);
   const Cloud none;
   Layer empty(ground, none, ground.depth);
-  EXPECT_EQ(empty.layer.weigh(VerticalWeight::tent, sums.spans()), ground.points());
+  EXPECT_EQ(empty.layer.weigh(VerticalWeight::tent, ground.depth, sums.spans()), ground.points());
 }
 
 /// Never below zero, and what is lacking is owed exactly.
@@ -149,7 +149,7 @@ TEST(GroundLayer, TakesNoMoreThanThereIs) {
   const Cloud cloud = random_cloud(4000, 7);
   Layer l(ground, cloud, ground.depth);
   Sums sums(ground.points());
-  l.layer.weigh(VerticalWeight::ramp, sums.spans());
+  l.layer.weigh(VerticalWeight::ramp, ground.depth, sums.spans());
   const std::vector<double> amounts = random_amounts(8, -3, 1);
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> u(0, 2e-5);
@@ -174,7 +174,7 @@ TEST(GroundLayer, GivesNoMoreThanAParcelCanTake) {
   const Cloud cloud = random_cloud(4000, 7);
   Layer l(ground, cloud, ground.depth);
   Sums sums(ground.points());
-  l.layer.weigh(VerticalWeight::ramp, sums.spans());
+  l.layer.weigh(VerticalWeight::ramp, ground.depth, sums.spans());
   const double much = ground.cell_volume();
   const std::vector<double> amounts = random_amounts(8, -0.1 * much, much);
   std::vector<double> values(cloud.x.size(), 0.5), owed(ground.points(), 0.0);
@@ -203,7 +203,7 @@ TEST(GroundLayer, ReadsValuesAtTheFirstLevel) {
       }
   Layer l(ground, cloud, 2 * ground.depth);
   Sums sums(ground.points());
-  EXPECT_EQ(l.layer.weigh(VerticalWeight::tent, sums.spans()), 0u);
+  EXPECT_EQ(l.layer.weigh(VerticalWeight::tent, ground.depth, sums.spans()), 0u);
   std::vector<double> theta(cloud.x.size()), means(ground.points());
   for (std::size_t p = 0; p < theta.size(); ++p)
     theta[p] = 300 + 0.01 * (cloud.z[p] - ground.bottom);
@@ -223,7 +223,7 @@ TEST(GroundLayer, InThePlaneIsLinearInX) {
   }
   Layer l(line, cloud, line.depth, true);
   Sums sums(line.points());
-  EXPECT_EQ(l.layer.weigh(VerticalWeight::ramp, sums.spans()), 0u);
+  EXPECT_EQ(l.layer.weigh(VerticalWeight::ramp, line.depth, sums.spans()), 0u);
   std::vector<double> values(cloud.x.size(), 0.0), amounts(8, 0.0);
   amounts[7] = 2;
   l.layer.add(VerticalWeight::ramp, sums.spans(), shares(amounts, sums), values.data());

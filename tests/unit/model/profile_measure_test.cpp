@@ -52,6 +52,17 @@ TEST(ProfileMeasure, LineAndDeviationFromIt) {
   EXPECT_NEAR(measure({values, 0, 10}, Measure::nonlinearity, 0, 40), 2.4 / 10.6, 1e-15);
 }
 
+/// The law of the wall over a bottom that is not at zero; what lies on the bottom does not count.
+TEST(ProfileMeasure, SlopeOverTheLogarithmOfTheHeight) {
+  std::vector<double> wind(9, -5.0);
+  for (std::size_t k = 1; k < wind.size(); ++k)
+    wind[k] = 1.25 * std::log(62.5 * static_cast<double>(k) / 0.1);
+  const Profile profile{wind, 300, 62.5};
+  EXPECT_NEAR(measure(profile, Measure::logarithmic_slope, 300, 800), 1.25, 1e-14);
+  EXPECT_NEAR(measure(profile, Measure::logarithmic_slope, 425, 550), 1.25, 1e-14);
+  EXPECT_TRUE(std::isnan(measure(profile, Measure::logarithmic_slope, 300, 362.5)));
+}
+
 TEST(ProfileMeasure, UnitsOfProducts) {
   EXPECT_EQ(product_of_units("m s-1", "m s-1"), "m2 s-2");
   EXPECT_EQ(product_of_units("m s-2", "m s-1"), "m2 s-3");
