@@ -33,6 +33,24 @@ scene::Key settings_key(const std::string& name, std::vector<scene::Setting> Fil
   return key;
 }
 
+/// Name, title and description of a file, in the section `path`.
+template <class File>
+scene::Table identity_of(const char* path, const char* doc, const char* name_doc,
+                         const char* description_doc) {
+  return {
+      .path = path,
+      .doc = doc,
+      .keys =
+          {scene::value("name", &File::name, "1", name_doc).otherwise("the name of the file"),
+           scene::value("title", &File::title, "1", "One line for tables and pictures.")
+               .otherwise("the name"),
+           scene::value("description", &File::description, "1", description_doc).otherwise("none")},
+      .other = {},
+      .finish = {},
+      .write_other = {},
+      .amend_schema = {}};
+}
+
 /// A list of seeds, whole numbers from 0.
 void read_seeds(scene::Reader& reader, const scene::Node& node, std::vector<std::uint64_t>& seeds);
 scene::Json list_of_seeds();

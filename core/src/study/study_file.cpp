@@ -215,19 +215,9 @@ const scene::Table& expect_table() {
 }
 
 const scene::Table& identity_table() {
-  static const scene::Table table = {
-      .path = "study",
-      .doc = "What the study is called and what it asks.",
-      .keys = {scene::value("name", &Study::name, "1", "Name of its files.")
-                   .otherwise("the name of the file"),
-               scene::value("title", &Study::title, "1", "One line for tables and pictures.")
-                   .otherwise("the name"),
-               scene::value("description", &Study::description, "1", "What it asks, at length.")
-                   .otherwise("none")},
-      .other = {},
-      .finish = {},
-      .write_other = {},
-      .amend_schema = {}};
+  static const scene::Table table =
+      identity_of<Study>("study", "What the study is called and what it asks.",
+                         "Name of its files.", "What it asks, at length.");
   return table;
 }
 

@@ -182,19 +182,9 @@ scene::Key sweep_seeds_key() {
 }
 
 const scene::Table& identity_table() {
-  static const scene::Table table = {
-      .path = "sweep",
-      .doc = "What the sweep is called and what it is for.",
-      .keys = {scene::value("name", &Sweep::name, "1", "Name of its folder and pictures.")
-                   .otherwise("the name of the file"),
-               scene::value("title", &Sweep::title, "1", "One line for tables and pictures.")
-                   .otherwise("the name"),
-               scene::value("description", &Sweep::description, "1", "What it is for, at length.")
-                   .otherwise("none")},
-      .other = {},
-      .finish = {},
-      .write_other = {},
-      .amend_schema = {}};
+  static const scene::Table table =
+      identity_of<Sweep>("sweep", "What the sweep is called and what it is for.",
+                         "Name of its folder and pictures.", "What it is for, at length.");
   return table;
 }
 
