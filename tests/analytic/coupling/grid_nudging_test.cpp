@@ -132,6 +132,8 @@ TEST(GridNudging, ActsAsADiffusivityOnResolvedScales) {
                    [](std::string_view, std::size_t) { return 1.0; });
     const auto along = static_cast<std::size_t>(c.per_wavelength * dense);
     run.store.resize(along * 8);
+    for (int col = 0; col < run.store.column_count(); ++col)  // new parcels are uninitialised
+      std::fill_n(run.store.column(col), run.store.size(), 0.0);
     const double k = 2 * std::numbers::pi / c.per_wavelength;
     for (std::size_t p = 0; p < run.store.size(); ++p) {
       const double x = (static_cast<double>(p % along) + 0.5) / dense;
@@ -139,8 +141,7 @@ TEST(GridNudging, ActsAsADiffusivityOnResolvedScales) {
       run.store.position(0)[p] = x;
       run.store.position(1)[p] = 0.25 + 0.5 * static_cast<double>(p / along);
       run.store.volume()[p] = 1.0 / (2 * dense);
-      run.store.vorticity(0)[p] = 0;
-      for (int s = 0; s < 3; ++s) run.store.shape(s)[p] = s == 1 ? 0 : 1e-10;
+      for (const int s : {0, 2}) run.store.shape(s)[p] = 1e-10;
     }
     for (std::size_t p = 0; p < run.store.size(); ++p)
       run.values("passive_tracer")[p] = std::sin(k * run.store.position(0)[p]);
