@@ -39,7 +39,8 @@ void add_conform(CLI::App& app, Action& action) {
   verb->add_option("--seed", request->seed, "Of the first random state; default: 1")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  verb->add_option("--time-limit", request->time_limit, "Seconds for one check; default: 60")
+  verb->add_option("--time-limit", request->time_limit,
+                   "Seconds of processor time for one check; default: 60")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
   verb->callback([&action, request, library, as_json] {

@@ -6,7 +6,7 @@ import sys
 
 def failed_checks(program, library):
     """Exit code, and what failed with the reasons."""
-    done = subprocess.run([program, "conform", library, "--json", "--time-limit", "15"],
+    done = subprocess.run([program, "conform", library, "--json", "--time-limit", "3"],
                           capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3):
         sys.exit(f"exit code {done.returncode}: {done.stderr}")

@@ -7,6 +7,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -71,16 +72,48 @@ void write_all(int file, const std::string& text) {
   ::_exit(0);
 }
 
-/// Reads both pipes until the child closes them or its time is over. True: in time.
-bool collect(Pipe& result, Pipe& words, Clock::time_point end, ChildResult& into) {
+/// The processor time a process has used so far, s; 0 if it cannot be known.
+double processor_time(pid_t process) {
+  clockid_t clock{};
+  timespec used{};
+  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+/// When a child has had its time. Processor time is what counts, so that a busy machine fails
+/// nobody; one that waits without using any is given up after `patience` times as long.
+class TimeLimit {
+ public:
+  TimeLimit(pid_t child, double seconds) : child_(child), seconds_(seconds) {}
+
+  bool is_over() {
+    if (const double used = processor_time(child_); used >= seconds_) {
+      words_ = fmt::format("took longer than {:g} s of processor time", seconds_);
+    } else if (std::chrono::duration<double>(Clock::now() - begin_).count() >=
+               patience * seconds_) {
+      words_ = fmt::format("took longer than {:g} s", patience * seconds_);
+    }
+    return !words_.empty();
+  }
+  /// Which limit was passed; empty: none.
+  const std::string& words() const { return words_; }
+  static constexpr std::chrono::milliseconds interval{50};  // between two looks
+
+ private:
+  static constexpr double patience = 10;
+  pid_t child_;
+  double seconds_;
+  Clock::time_point begin_ = Clock::now();
+  std::string words_;
+};
+
+/// Reads both pipes until the child closes them or its time is over.
+void collect(Pipe& result, Pipe& words, TimeLimit& limit, ChildResult& into) {
   std::array<pollfd, 2> files{{{result.ends[0], POLLIN, 0}, {words.ends[0], POLLIN, 0}}};
   std::array<char, 4096> buffer{};
-  while (files[0].fd >= 0 || files[1].fd >= 0) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
-    if (left.count() <= 0) return false;
-    if (::poll(files.data(), files.size(), static_cast<int>(left.count()) + 1) < 0 &&
-        errno != EINTR)
-      return false;
+  while ((files[0].fd >= 0 || files[1].fd >= 0) && !limit.is_over()) {
+    if (::poll(files.data(), files.size(), static_cast<int>(TimeLimit::interval.count())) < 0)
+      continue;  // a signal
     for (std::size_t k = 0; k < files.size(); ++k) {
       if (files[k].fd < 0 || (files[k].revents & (POLLIN | POLLHUP | POLLERR)) == 0) continue;
       const ssize_t got = ::read(files[k].fd, buffer.data(), buffer.size());
@@ -89,7 +122,6 @@ bool collect(Pipe& result, Pipe& words, Clock::time_point end, ChildResult& into
       if (got <= 0) files[k].fd = -1;
     }
   }
-  return true;
 }
 
 std::string describe_end(int status, const std::string& words) {
@@ -115,20 +147,17 @@ ChildResult run_in_child(const std::function<std::string()>& work, double second
   if (child == 0) become_child(work, result.ends[1], words.ends[1], parent);
   result.close_end(1);
   words.close_end(1);
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(seconds));
+  TimeLimit limit(child, seconds);
   ChildResult found;
-  const bool in_time = collect(result, words, end, found);
+  collect(result, words, limit, found);
+  const bool in_time = limit.words().empty();
   ::kill(-child, SIGKILL);  // whatever is left of it
   if (!in_time) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   found.finished = in_time && WIFEXITED(status) && WEXITSTATUS(status) == 0 && !found.text.empty();
-  if (!found.finished) {
-    found.end = in_time ? describe_end(status, found.words)
-                        : fmt::format("took longer than {:g} s", seconds);
-  }
+  if (!found.finished) found.end = in_time ? describe_end(status, found.words) : limit.words();
   return found;
 }
 

@@ -12,8 +12,9 @@ struct ChildResult {
   std::string words;  // what it wrote on standard error, its end
 };
 
-/// Runs `work` in a copy of this process and waits at most `seconds`. What the copy prints is
-/// caught. To be called before this process has started threads: a copy has only the one.
+/// Runs `work` in a copy of this process, for at most `seconds` of processor time and ten times as
+/// many of waiting. What the copy prints is caught. To be called before this process has started
+/// threads: a copy has only the one.
 /// Errors  Error(ExitCode::file) if no process can be started
 ChildResult run_in_child(const std::function<std::string()>& work, double seconds);
 

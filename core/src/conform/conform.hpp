@@ -11,7 +11,7 @@ struct Request {
   std::filesystem::path library;
   std::vector<std::string> only;  // ids of checks; empty: all
   std::uint64_t seed = 1;         // of the first random state
-  double time_limit = 60;         // s, of one check
+  double time_limit = 60;         // s of processor time, of one check
 };
 
 enum class Verdict { passed, failed, not_applicable };
