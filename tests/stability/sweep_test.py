@@ -143,7 +143,10 @@ list: [{{time.scheme: rk4}}, {{operators: [{{use: org.example.hostile}}]}}]
                 for name in ("jitter", "seed", "status", "wall_time"):
                     self.assertIn(name, ensemble["kinetic_energy"].coords)
                 self.assertEqual(list(ensemble["jitter"].values), [0, 0, 0.2, 0.2, 0.4, 0.4])
+                self.assertEqual(list(ensemble["member"].values), list(range(6)))
                 self.assertEqual(list(ensemble["seed"].values), [3, 5, 3, 5, 3, 5])
+                for name in ("member", "seed"):
+                    self.assertEqual(ensemble[name].dtype.kind, "i", name)
                 self.assertEqual(set(ensemble["status"].values), {"done"})
                 self.assertTrue((ensemble["kinetic_energy"].values == energy).all())
                 numpy.testing.assert_allclose(ensemble["kinetic_energy_mean"], energy.mean(axis=0),

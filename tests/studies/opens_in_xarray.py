@@ -12,6 +12,7 @@ assert rows, "the table is empty"
 for engine in ("netcdf4", "h5netcdf"):
     with xarray.open_dataset(folder / "study.nc", engine=engine) as table:
         assert table.sizes["point"] == len(rows), engine
+        assert table["point"].dtype.kind == "i", engine
         assert [str(label) for label in table["label"].values] == [r["label"] for r in rows], engine
         for name in table.data_vars:
             if name not in rows[0] or table[name].dtype.kind != "f":

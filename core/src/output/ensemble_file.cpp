@@ -29,7 +29,7 @@ class EnsembleWriter {
     hdf5::write_text(session_, session_.file(), "sweep", content_.sweep);
     std::vector<double> indices(content_.members);
     std::iota(indices.begin(), indices.end(), 0.0);
-    add_axis({{"member", "1", "index of the member", "realization"}, std::move(indices)});
+    add_axis({{"member", "1", "index of the member", "realization"}, std::move(indices), "", true});
     for (const Axis& axis : content_.axes) add_axis(axis);
     write_columns();
     for (const MemberVariable& variable : content_.variables) write(variable);
@@ -48,9 +48,7 @@ class EnsembleWriter {
   void write_columns() {
     const VariableShape shape = shape_of({"member"});
     for (const NumberColumn& column : content_.numbers) {
-      const Id dataset =
-          create_variable(session_, session_.file(), column.variable, exact_encoding(), shape);
-      write_values(dataset, shape, column.values);
+      write_values(create_column(session_, column, shape), shape, column.values);
       note_coordinate(column.variable.name);
     }
     const Id text = variable_length_text(session_);

@@ -133,8 +133,8 @@ Id create_time(const Session& session, hid_t group) {
 
 Id create_axis(const Session& session, hid_t group, const Axis& axis) {
   const std::string& name = axis.variable.name;
-  hdf5::write_array(session, group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, axis.values.data(),
-                    axis.values.size());
+  hdf5::write_array(session, group, name, axis.whole ? H5T_STD_I32LE : H5T_IEEE_F64LE,
+                    H5T_NATIVE_DOUBLE, axis.values.data(), axis.values.size());
   Id dataset = hdf5::open_dataset(session, group, name);
   session.check(H5DSset_scale(dataset, name.c_str()), "create dimension " + name);
   write_description(session, dataset, axis.variable);

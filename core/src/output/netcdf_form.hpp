@@ -25,6 +25,7 @@ struct Axis {
   Variable variable;
   std::vector<double> values;
   std::string positive{};  // "up" for heights
+  bool whole = false;      // stored as 32-bit integers
 };
 
 /// Variables over the same axes, which are listed from the slowest to the fastest varying.

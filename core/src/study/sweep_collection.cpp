@@ -218,12 +218,12 @@ void add_parameters(const SweepResult& result, output::EnsembleContent& content)
     for (const Member& member : ensemble.members) words.values.push_back(member.values[p].text);
     content.words.push_back(std::move(words));
   }
-  output::NumberColumn seeds{{"seed", "1", "seed of the member", ""}, {}},
+  output::NumberColumn seeds{{"seed", "1", "seed of the member", ""}, {}, true},
       walls{{"wall_time", "s", "wall time of the member", ""}, {}};
   output::WordColumn status{{"status", "", "what became of the member", ""}, {}};
   for (std::size_t m = 0; m < ensemble.members.size(); ++m) {
-    const auto& seed = ensemble.members[m].seed;
-    seeds.values.push_back(seed ? static_cast<double>(*seed) : not_a_number);
+    if (const auto& seed = ensemble.members[m].seed)
+      seeds.values.push_back(static_cast<double>(*seed));
     walls.values.push_back(result.records[m].wall);
     status.values.push_back(word_of(result.records[m].status));
   }
