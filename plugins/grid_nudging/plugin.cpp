@@ -2,6 +2,7 @@
 // set by the strain of the flow, exactly conserving and monotone.
 #include <pileus/mesh.hpp>
 #include <pileus/mixed_scalars.hpp>
+#include <pileus/numerics.hpp>
 
 #include <array>
 #include <limits>
@@ -24,6 +25,9 @@ Reference reference_of(std::string_view scalar) {
 
 constexpr std::array<const char*, 4> vorticities = {"vorticity", "x_vorticity", "y_vorticity",
                                                     "z_vorticity"};
+
+constexpr std::array<const char*, 3> reference_names = {
+    "reference_buoyancy", "reference_potential_temperature", "reference_total_water"};
 
 /// One quantity during a pass: its values, and what is relaxed if that is something else.
 struct Relaxed {
@@ -53,18 +57,9 @@ class GridNudging : public Operator<GridNudging> {
 
   void configured() {
     mesh_ = Mesh(host());
-    const auto heights = list(reference_height_);
-    for (std::size_t i = 1; i < heights.size(); ++i)
-      if (!(heights[i] > heights[i - 1]))
-        throw Failure("reference_height does not ascend; order the heights from low to high",
-                      PILEUS_E_CONFIG);
-    for (std::size_t r = 0; r < profiles_.size(); ++r) {
-      const auto values = list(reference_[r]);
-      if (values.size() != 1 && values.size() != heights.size())
-        throw Failure("a reference profile needs one value for each reference_height",
-                      PILEUS_E_CONFIG);
-      profiles_[r] = Profile(heights, values);
-    }
+    for (std::size_t r = 0; r < profiles_.size(); ++r)
+      profiles_[r] = profile_of_lists({"reference_height", list(reference_height_)},
+                                      {reference_names[r], list(reference_[r])});
   }
 
   void apply(const pileus_step& step, Block block) const {
@@ -106,15 +101,14 @@ class GridNudging : public Operator<GridNudging> {
     reference_height_ = d.numbers("reference_height", "m", 0.0)
                             .range(-1e6, 1e6)
                             .doc("heights of the profiles that perturbations are measured from");
-    reference_[0] = d.numbers("reference_buoyancy", "m s-2", 0.0)
+    reference_[0] = d.numbers(reference_names[0], "m s-2", 0.0)
                         .range(-1e4, 1e4)
                         .doc("profile of the buoyancy, or of the liquid-water buoyancy");
-    reference_[1] = d.numbers("reference_potential_temperature", "K", 0.0)
+    reference_[1] = d.numbers(reference_names[1], "K", 0.0)
                         .range(0.0, 2000.0)
                         .doc("profile of the potential temperature in use");
-    reference_[2] = d.numbers("reference_total_water", "1", 0.0)
-                        .range(0.0, 1.0)
-                        .doc("profile of the total water");
+    reference_[2] =
+        d.numbers(reference_names[2], "1", 0.0).range(0.0, 1.0).doc("profile of the total water");
   }
 
   /// Relaxes the given quantities in passes of as many as fit beside the share in one record.
@@ -142,7 +136,7 @@ class GridNudging : public Operator<GridNudging> {
   /// Values less their reference profile; the values themselves where that is zero everywhere.
   const double* perturbation(Block block, const double* values, Reference reference) const {
     if (reference == Reference::none) return values;
-    const Profile& profile = profiles_[static_cast<std::size_t>(reference)];
+    const PiecewiseLinear& profile = profiles_[static_cast<std::size_t>(reference)];
     if (profile.is_zero()) return values;
     const double* z = block.in(height_);
     double* result = block.scratch(static_cast<std::size_t>(block.count())).data();
@@ -161,7 +155,7 @@ class GridNudging : public Operator<GridNudging> {
     const auto strain = block.strided_in<double>(strain_);
     parallel_for(static_cast<std::int64_t>(mesh_.nodes()), [&](std::int64_t node) {
       double* record = field + static_cast<std::size_t>(node) * width;
-      record[0] = relaxed_part(beta, strain(node), step.dt);
+      record[0] = numerics::relaxed_part(beta * strain(node) * step.dt);
       for (std::size_t f = 0; f < pass.size(); ++f) record[1 + f] *= record[0];
     });
     for (std::size_t f = 0; f <= pass.size(); ++f) at_parcels[f] = block.scratch(parcels).data();
@@ -191,7 +185,7 @@ class GridNudging : public Operator<GridNudging> {
   std::array<Slot, vorticities.size()> vorticity_;
   Param beta_, mix_vorticity_, beta_vorticity_, reference_height_;
   std::array<Param, 3> reference_;
-  std::array<Profile, 3> profiles_;
+  std::array<PiecewiseLinear, 3> profiles_;
   Mesh mesh_;
 };
 

@@ -29,12 +29,9 @@ class LangevinMixing : public Operator<LangevinMixing> {
   }
 
   void configured() {
-    const auto heights = list(profile_height_);
-    for (std::size_t i = 1; i < heights.size(); ++i)
-      if (!(heights[i] > heights[i - 1])) fail("profile_height does not ascend");
-    for (const Param values : {diffusivity_, variance_})
-      if (list(values).size() != 1 && list(values).size() != heights.size())
-        fail("a profile needs one value for each profile_height");
+    const NamedList heights{"profile_height", list(profile_height_)};
+    diffusivity_profile_ = profile_of_lists(heights, {"diffusivity", list(diffusivity_)});
+    variance_profile_ = profile_of_lists(heights, {"velocity_variance", list(variance_)});
   }
 
   double prepare(const pileus_step&, Block whole) {
@@ -160,8 +157,6 @@ class LangevinMixing : public Operator<LangevinMixing> {
         .doc("velocity fluctuation over its standard deviation");
   }
 
-  [[noreturn]] static void fail(const char* text) { throw Failure(text, PILEUS_E_CONFIG); }
-
   static const pileus_grid& mesh_of(Block block) {
     const pileus_grid* grid = block.raw().grid;
     if (grid == nullptr) throw Failure("it needs a mesh, which this run does not have");
@@ -188,23 +183,11 @@ class LangevinMixing : public Operator<LangevinMixing> {
     return largest;
   }
 
-  /// Piecewise linear profile and its slope.
   template <int D>
-  Local<D> profile(Param param, double z) const {
-    const auto heights = list(profile_height_), values = list(param);
+  static Local<D> at_height(const PiecewiseLinear& profile, double z) {
     Local<D> result;
-    // A height that is not a number is at the lower end: it must not lead outside the list.
-    if (values.size() == 1 || !(z > heights.front())) {
-      result.value = values.front();
-    } else if (z >= heights.back()) {
-      result.value = values.back();
-    } else {
-      const auto above = std::upper_bound(heights.begin(), heights.end(), z) - heights.begin();
-      const auto k = static_cast<std::size_t>(above);
-      const double slope = (values[k] - values[k - 1]) / (heights[k] - heights[k - 1]);
-      result.value = values[k - 1] + slope * (z - heights[k - 1]);
-      result.gradient[D - 1] = slope;
-    }
+    result.value = profile(z);
+    result.gradient[D - 1] = profile.derivative(z);
     return result;
   }
   template <int D>
@@ -248,7 +231,8 @@ class LangevinMixing : public Operator<LangevinMixing> {
     if (choice(model_) == 0) {
       const double factor = from_strain ? diffusivity_per_strain(grid) : 0.0;
       move_brownian<D>(step, block, [&](const double* x) {
-        return from_strain ? scaled(factor, strain.at(x)) : profile<D>(diffusivity_, x[D - 1]);
+        return from_strain ? scaled(factor, strain.at(x))
+                           : at_height<D>(diffusivity_profile_, x[D - 1]);
       });
     } else {
       const double factor = from_strain ? sigma_per_strain(grid) : 0.0;
@@ -256,7 +240,7 @@ class LangevinMixing : public Operator<LangevinMixing> {
           step, block,
           [&](const double* x) {
             return from_strain ? scaled(factor, strain.at(x))
-                               : root(profile<D>(variance_, x[D - 1]));
+                               : root(at_height<D>(variance_profile_, x[D - 1]));
           },
           [&](const double* x) {
             return from_strain ? value(time_per_strain_) / strain.at(x).value : value(time_scale_);
@@ -331,6 +315,7 @@ class LangevinMixing : public Operator<LangevinMixing> {
   Slot strain_, volume_, weight_;
   Param model_, from_, smagorinsky_, energy_, time_per_strain_;
   Param profile_height_, diffusivity_, variance_, time_scale_, courant_, memory_steps_;
+  PiecewiseLinear diffusivity_profile_, variance_profile_;
 };
 
 }  // namespace

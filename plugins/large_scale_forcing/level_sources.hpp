@@ -88,9 +88,4 @@ struct GeostrophicPush {
   double y(double u, double v) const { return sine * u + cosine_part * v; }
 };
 
-/// Part of the distance to its target that a quantity relaxed at `rate` covers in `dt`.
-inline double relaxed_part(double rate, double dt) {
-  return -std::expm1(-rate * dt);
-}
-
 }  // namespace pileus::large_scale

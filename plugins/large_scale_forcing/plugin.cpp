@@ -1,6 +1,7 @@
 // What the large scale does to a small domain: subsidence, tendencies, the mean wind and a sponge,
 // as changes of the levels' means that are given to the parcels.
 #include <pileus/mesh.hpp>
+#include <pileus/numerics.hpp>
 
 #include <algorithm>
 #include <array>
@@ -287,7 +288,7 @@ class LargeScaleForcing : public Operator<LargeScaleForcing> {
 
   double nudge(double dt, std::size_t component, const double* shear, double mean,
                double* gain) const {
-    const double part = relaxed_part(1.0 / value(parameters_.wind_nudging_time), dt);
+    const double part = numerics::relaxed_part(1.0 / value(parameters_.wind_nudging_time) * dt);
     for (std::size_t k = 0; k < forcing_.levels.count(); ++k)
       gain[k] += part * (forcing_.target.shear[component][k] - shear[k]);
     return part * (forcing_.target.mean[component] - mean);
@@ -309,7 +310,7 @@ class LargeScaleForcing : public Operator<LargeScaleForcing> {
             Subjects& subjects) const {
     double* parts = zeros(block);
     for (std::size_t k = 0; k < forcing_.levels.count(); ++k)
-      parts[k] = relaxed_part(forcing_.sponge[k], step.dt);
+      parts[k] = numerics::relaxed_part(forcing_.sponge[k] * step.dt);
     for (std::size_t s = 0; s < subjects.count; ++s) {
       Subject& subject = subjects.list[s];
       if (subject.scalar >= 0 && !scalar_sponge_) continue;

@@ -1,7 +1,7 @@
 // Idealised longwave cooling of stratocumulus: a flux that follows from the liquid water of each
 // column, and its convergence given to the parcels' potential temperature.
+#include <pileus/air_parameters.hpp>
 #include <pileus/mesh.hpp>
-#include <pileus/reference_state.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,8 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
   void describe(Declaration& d) {
     describe_operator(d);
     describe_flux(d);
-    describe_air(d);
+    air_.describe_reference_constants(d);
+    air_.describe_reference_profile(d);
     liquid_ = d.reads("mass_fraction_of_cloud_liquid_water_in_air", "1")
                   .range(0.0, 1.0)
                   .doc("absorbs and emits");
@@ -46,20 +47,13 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
   void configured() {
     mesh_ = Mesh(host());
     flux_ = {value(above_), value(below_), value(absorption_), value(divergence_),
-             value(heat_capacity_)};
-    const auto heights = list(reference_height_), theta_v = list(reference_theta_v_);
-    if (heights.size() != theta_v.size())
-      throw Failure("reference_potential_temperature needs one value for each reference_height",
-                    PILEUS_E_CONFIG);
-    for (std::size_t i = 1; i < heights.size(); ++i)
-      if (!(heights[i] > heights[i - 1]))
-        throw Failure("reference_height does not ascend; order the heights from low to high",
-                      PILEUS_E_CONFIG);
+             value(air_.heat_capacity)};
     thermo::Constants constants;
-    constants.gravity = value(gravity_);
-    constants.gas_constant_dry_air = value(gas_constant_);
-    constants.heat_capacity = value(heat_capacity_);
-    reference_.emplace(heights, theta_v, value(base_height_), value(surface_pressure_), constants);
+    constants.gravity = value(air_.gravity);
+    constants.gas_constant_dry_air = value(air_.gas_constant);
+    constants.heat_capacity = value(air_.heat_capacity);
+    reference_.emplace(air_.reference_state([this](Param p) { return value(p); },
+                                            [this](Param p) { return list(p); }, constants));
     kappa_ = constants.kappa();
   }
 
@@ -122,28 +116,6 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
                            .doc("total water (vapour, where it is carried alone) at the inversion");
   }
 
-  void describe_air(Declaration& d) {
-    gravity_ = d.number("gravity", "m s-2", 9.81).range(1e-3, 1e3).doc("acceleration of gravity");
-    heat_capacity_ = d.number("heat_capacity", "J kg-1 K-1", 1005.0)
-                         .range(1.0, 1e6)
-                         .doc("of dry air at constant pressure");
-    gas_constant_ =
-        d.number("gas_constant_dry_air", "J kg-1 K-1", 287.04).range(1.0, 1e4).doc("of dry air");
-    base_height_ =
-        d.number("base_height", "m", 0.0).range(-1e6, 1e6).doc("height of the surface pressure");
-    surface_pressure_ = d.number("surface_pressure", "Pa", 1.0e5)
-                            .range(1e3, 2e5)
-                            .doc("reference pressure at the base height");
-    reference_height_ = d.numbers("reference_height", "m", 0.0)
-                            .range(-1e6, 1e6)
-                            .doc("heights of the reference profile, ascending");
-    reference_theta_v_ = d.numbers("reference_potential_temperature", "K", 300.0)
-                             .range(50.0, 2000.0)
-                             .doc(
-                                 "virtual potential temperature of the hydrostatic reference "
-                                 "state at those heights, whose density the flux passes through");
-  }
-
   /// Density and Exner function of the reference state.
   std::array<double, 2> air_at(double z) const {
     const thermo::ReferenceState::Point at = reference_->at(z);
@@ -151,7 +123,7 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
       throw Failure("the domain reaches above the top of the reference atmosphere",
                     PILEUS_E_CONFIG);
     const double pressure = thermo::pressure_of_exner(at.exner, kappa_);
-    const double density = pressure / (value(gas_constant_) * at.theta_v * at.exner);
+    const double density = pressure / (value(air_.gas_constant) * at.theta_v * at.exner);
     if (!(density > 0 && std::isfinite(density)))
       throw Failure(
           "the reference atmosphere has no density that a number can hold; its gas constant, heat "
@@ -191,7 +163,8 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
       heating(column, flux_, air.first(n), liquid, z_i, air_at(z_i)[0], convergence);
       double given = 0;
       for (std::size_t k = 0; k < n; ++k) {
-        const double warming = dt * convergence[k] / (air[k] * value(heat_capacity_) * air[n + k]);
+        const double warming =
+            dt * convergence[k] / (air[k] * value(air_.heat_capacity) * air[n + k]);
         const double cell = area * column.spacing, volume = record[k * width];
         // What a node gives to its parcels is what its cell calls for, however full that is.
         const bool filled = volume > 1e-3 * cell;
@@ -209,8 +182,8 @@ class LongwaveCooling : public Operator<LongwaveCooling> {
   Slot liquid_, total_water_, vapour_;
   std::array<Slot, 2> theta_;
   Budget heat_;
-  Param above_, below_, absorption_, divergence_, inversion_water_, gravity_, heat_capacity_,
-      gas_constant_, base_height_, surface_pressure_, reference_height_, reference_theta_v_;
+  Param above_, below_, absorption_, divergence_, inversion_water_;
+  ReferenceParameters air_;
   Flux flux_;
   double kappa_ = 0;
   std::optional<thermo::ReferenceState> reference_;

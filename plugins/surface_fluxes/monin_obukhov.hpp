@@ -3,12 +3,14 @@
 //   U = (u*/κ) F_m,  θ_1 − θ_s = (θ*/κ) F_h   with   F = ln(z_1/z_0) − ψ(z_1/L) + ψ(z_0/L)
 //   L = −u*³ θ_00/(κ g <w'θ_v'>),  <w'θ'> = −u* θ*
 //
-// One equation remains for ζ = z_1/L. It is solved for ln|ζ| in a bracket, see bracketed_root.hpp.
+// One equation remains for ζ = z_1/L. It is solved for ln|ζ| in a bracket, see
+// numerics::bracketed_root.
 #pragma once
+#include <pileus/numerics.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "bracketed_root.hpp"
 #include "stability_functions.hpp"
 
 namespace pileus::surface {
@@ -77,9 +79,9 @@ class Similarity {
     const double high = flux > 0 ? std::log(greatest_stability) : std::log(end_of_branch());
     // Rounding of the end itself is no reason to decouple.
     if (flux < 0 && excess(high) < -1e-12) return decoupled(wind);
-    const BracketedRoot root =
-        bracketed_root(excess, std::log(least_stability), high, stability_tolerance);
-    return at(sign * std::exp(root.x), wind, root.evaluations);
+    const numerics::Root root =
+        numerics::bracketed_root(excess, std::log(least_stability), high, stability_tolerance);
+    return at(sign * std::exp(root.x), wind, root.iterations);
   }
 
   /// Of a given difference θ_v(z_1) − θ_v(surface), K: |ζ| F_h U²/F_m² = z_1 g |Δθ_v|/θ_00. Gusts
@@ -95,10 +97,10 @@ class Similarity {
       const double wind = wind_with_gusts(speed, zeta, difference);
       return log_s + std::log(profile_h(zeta) / target) + 2.0 * std::log(wind / profile_m(zeta));
     };
-    const BracketedRoot root = bracketed_root(excess, std::log(least_stability),
-                                              std::log(greatest_stability), stability_tolerance);
+    const numerics::Root root = numerics::bracketed_root(
+        excess, std::log(least_stability), std::log(greatest_stability), stability_tolerance);
     const double zeta = sign * std::exp(root.x);
-    return at(zeta, wind_with_gusts(speed, zeta, difference), root.evaluations);
+    return at(zeta, wind_with_gusts(speed, zeta, difference), root.iterations);
   }
 
   /// F_m and F_h. They are integrals of φ/z from z_0 to z_1, positive for every ζ.
@@ -175,8 +177,9 @@ class Similarity {
       const double end = log_m_ / (10.0 * (1.0 - layer_.roughness / layer_.height));
       return end <= 1 ? end : greatest_stability;
     }
-    return std::exp(
-        bracketed_root(falls, std::log(least_stability), std::log(1e6), stability_tolerance).x);
+    return std::exp(numerics::bracketed_root(falls, std::log(least_stability), std::log(1e6),
+                                             stability_tolerance)
+                        .x);
   }
 
   SimilaritySettings s_;
@@ -214,8 +217,8 @@ Exchange over_waves(const Charnock& sea, double height, Solve&& solve) {
     evaluations += e.evaluations;
     return log_u - std::log(std::max(e.friction_velocity, 0.1 * least_friction));
   };
-  const BracketedRoot root = bracketed_root(excess, std::log(least_friction),
-                                            std::log(greatest_friction), stability_tolerance);
+  const numerics::Root root = numerics::bracketed_root(
+      excess, std::log(least_friction), std::log(greatest_friction), stability_tolerance);
   Exchange result = solve(sea.layer(height, std::exp(root.x)));
   result.evaluations += evaluations;
   return result;

@@ -65,16 +65,63 @@ Root bracketed_newton(F&& f, double low, double high, double start, double relat
   return root;
 }
 
+/// Most evaluations of `bracketed_root` in a bracket of `width` down to `tolerance`: every third
+/// halves the bracket, so that three for each binary digit suffice, and two for the ends.
+inline int most_evaluations(double width, double tolerance) {
+  return 5 + 3 * static_cast<int>(std::ceil(std::log2(width / tolerance)));
+}
+
+/// Where an increasing function changes its sign in [low, high], without its derivative and in a
+/// number of evaluations that is known before: false position with the weights of Illinois, every
+/// third step a bisection. Small steps alone are no end, since next to a steep side they creep: the
+/// bracket is closed from its other side.
+///
+/// Ensures    low ≤ x ≤ high, within `tolerance` of where f changes its sign; where it does not, x
+/// is
+///            the end next to the root
+/// Errors     converged == false where the function does not change its sign
+template <class F>
+Root bracketed_root(F&& f, double low, double high, double tolerance) {
+  const int most = most_evaluations(high - low, tolerance);
+  double at_low = f(low), at_high = f(high);
+  if (!(at_low < 0)) return {low, 2, at_low == 0};
+  if (!(at_high > 0)) return {high, 2, at_high == 0};
+  double x = low, before = high;
+  for (int n = 3; n <= most; ++n) {
+    const bool creeps = std::abs(x - before) < tolerance;
+    double next = high - at_high * (high - low) / (at_high - at_low);
+    if (creeps) next = x == low ? low + 0.5 * tolerance : high - 0.5 * tolerance;
+    before = x;
+    x = n % 3 != 2 && next > low && next < high ? next : low + 0.5 * (high - low);
+    const double at = f(x);
+    // An end that stays for a second time counts half, so that the next step passes the root.
+    if (at < 0) {
+      if (low == before) at_high *= 0.5;
+      low = x, at_low = at;
+    } else {
+      if (high == before) at_low *= 0.5;
+      high = x, at_high = at;
+    }
+    if (at == 0 || high - low <= tolerance) return {x, n, true};
+  }
+  return {x, most, true};
+}
+
+/// The part of its distance to a target that a decay of ratio = dt/time_scale ≥ 0 covers.
+inline double relaxed_part(double ratio) {
+  return -std::expm1(-ratio);
+}
+
 /// Exact solution after dt of dx/dt = (target − x)/time_scale, with ratio = dt/time_scale ≥ 0:
 /// stable for every ratio, between x and target, and x itself bit for bit for ratio = 0.
 inline double relaxed(double x, double target, double ratio) {
-  return x - (target - x) * std::expm1(-ratio);
+  return x + (target - x) * relaxed_part(ratio);
 }
 
 /// (1 − exp(−r))/r: the factor by which a constant source acts over a step during a decay of
 /// r = dt/time_scale; 1 for r = 0.
 inline double decay_mean(double r) {
-  return r == 0 ? 1.0 : -std::expm1(-r) / r;
+  return r == 0 ? 1.0 : relaxed_part(r) / r;
 }
 
 /// exp(x) without branches or calls, so that loops over it become vector code.

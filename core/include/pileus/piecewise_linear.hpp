@@ -2,8 +2,11 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <span>
 #include <vector>
+
+#include "failure.hpp"
 
 namespace pileus {
 
@@ -15,6 +18,13 @@ class PiecewiseLinear {
   explicit PiecewiseLinear(std::span<const double> pairs) {
     for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
       points_.push_back({pairs[i], pairs[i + 1]});
+    if (points_.empty()) points_.push_back({0.0, 0.0});
+  }
+
+  /// From ascending places and a value for each.
+  PiecewiseLinear(std::span<const double> places, std::span<const double> values) {
+    for (std::size_t i = 0; i < std::min(places.size(), values.size()); ++i)
+      points_.push_back({places[i], values[i]});
     if (points_.empty()) points_.push_back({0.0, 0.0});
   }
 
@@ -76,5 +86,38 @@ class PiecewiseLinear {
 
   std::vector<Point> points_;
 };
+
+/// Refuses a list parameter whose values do not ascend.
+/// Errors  Failure(PILEUS_E_CONFIG)
+inline void require_ascending(const char* parameter, std::span<const double> values) {
+  if (std::adjacent_find(values.begin(), values.end(),
+                         [](double a, double b) { return !(b > a); }) == values.end())
+    return;
+  Failure failure("", PILEUS_E_CONFIG);
+  std::snprintf(failure.record.text, sizeof failure.record.text,
+                "%s does not ascend; order its values from low to high", parameter);
+  throw failure;
+}
+
+/// A list parameter and its name, for what is said about it.
+struct NamedList {
+  const char* name;
+  std::span<const double> values;
+};
+
+/// The profile that two list parameters stand for: a value for each height, or one for all.
+/// Errors  Failure(PILEUS_E_CONFIG) for lists of different length or heights that do not ascend
+inline PiecewiseLinear profile_of_lists(const NamedList& heights, const NamedList& values) {
+  require_ascending(heights.name, heights.values);
+  if (values.values.size() == 1) {
+    const double everywhere[] = {0.0, values.values.front()};
+    return PiecewiseLinear(everywhere);
+  }
+  if (values.values.size() == heights.values.size()) return {heights.values, values.values};
+  Failure failure("", PILEUS_E_CONFIG);
+  std::snprintf(failure.record.text, sizeof failure.record.text,
+                "%s needs one value, or one for each %s", values.name, heights.name);
+  throw failure;
+}
 
 }  // namespace pileus

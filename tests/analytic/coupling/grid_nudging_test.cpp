@@ -10,6 +10,7 @@
 
 #include "../../../plugins/grid_nudging/nudging.hpp"
 #include "../../unit/coupling/sampled_mesh.hpp"
+#include "pileus/numerics.hpp"
 
 namespace pileus::testing {
 namespace {
@@ -153,7 +154,7 @@ TEST(GridNudging, ActsAsADiffusivityOnResolvedScales) {
       projection += mode * run.values("passive_tracer")[p];
       norm += mode * mode;
     }
-    const double f = nudging::relaxed_part(1.0, 1.0, dt);
+    const double f = numerics::relaxed_part(dt);
     const double damped = (1 - projection / norm) / f;
     const double sinc = std::sin(0.5 * k) / (0.5 * k);
     // A row of 64 points stands for a continuum up to 1/64² of the tent's variance.

@@ -63,12 +63,43 @@ TEST(BracketedNewton, reports_a_nan) {
   EXPECT_FALSE(bracketed_newton(f, 0, 1, 0.5, 1e-12).converged);
 }
 
+TEST(BracketedRoot, ends_within_the_evaluations_it_promises) {
+  // Flat parts, kinks and jumps, where false position alone creeps.
+  const auto check = [](auto f, double low, double high, double root) {
+    int evaluations = 0;
+    const auto counted = [&](double x) {
+      ++evaluations;
+      return f(x);
+    };
+    const Root found = bracketed_root(counted, low, high, 1e-12);
+    EXPECT_TRUE(found.converged);
+    EXPECT_NEAR(found.x, root, 2e-12);
+    EXPECT_LE(evaluations, most_evaluations(high - low, 1e-12));
+    EXPECT_EQ(found.iterations, evaluations);
+  };
+  check([](double x) { return std::atan(x - 3); }, -1e6, 1e6, 3.0);
+  check([](double x) { return std::pow(x, 9) - 1e-9; }, -10, 20, 0.1);
+  check([](double x) { return x < 2 ? -1.0 : 1e6; }, 0, 1e3, 2.0);
+  check([](double x) { return std::exp(x) - 2; }, 0, 700, std::log(2.0));
+}
+
+TEST(BracketedRoot, is_the_nearer_end_where_nothing_changes_its_sign) {
+  const auto rising = [](double x) { return x; };
+  EXPECT_EQ(bracketed_root(rising, 1, 2, 1e-12).x, 1);
+  EXPECT_EQ(bracketed_root(rising, -2, -1, 1e-12).x, -1);
+  EXPECT_FALSE(bracketed_root(rising, 1, 2, 1e-12).converged);
+  EXPECT_FALSE(bracketed_root(rising, -2, -1, 1e-12).converged);
+  EXPECT_TRUE(bracketed_root(rising, 0, 1, 1e-12).converged);
+  EXPECT_FALSE(bracketed_root([](double) { return std::nan(""); }, 0, 1, 1e-12).converged);
+}
+
 TEST(Relaxed, is_exact_for_every_ratio) {
   EXPECT_EQ(relaxed(3.0, 7.0, 0.0), 3.0);
   EXPECT_EQ(relaxed(3.0, 7.0, 1e6), 7.0);
   EXPECT_NEAR(relaxed(3.0, 7.0, 0.5), 7.0 - 4.0 * std::exp(-0.5), 1e-15 * 7);
   EXPECT_NEAR(decay_mean(1e-9), 1 - 0.5e-9, 1e-16);
   EXPECT_EQ(decay_mean(0.0), 1.0);
+  EXPECT_NEAR(relaxed_part(1e-9), 1e-9, 1e-18);
 }
 
 }  // namespace
