@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "base/shell_word.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -28,9 +29,9 @@ void add_new_plugin(CLI::App& app, Action& action) {
       const std::string folder = files.front().parent_path().string();
       for (const auto& file : files) std::cout << file.string() << '\n';
       std::cout << fmt::format(
-          "\nBuild and test it: cmake -S {0} -B {0}/build && cmake --build {0}/build && ctest "
-          "--test-dir {0}/build\n{0}/README.md says more.\n",
-          folder);
+          "\nBuild and test it: cmake -S {0} -B {1} && cmake --build {1} && ctest --test-dir {1}\n"
+          "{2}/README.md says more.\n",
+          shell_word(folder), shell_word(folder + "/build"), folder);
       return ExitCode::done;
     };
   });

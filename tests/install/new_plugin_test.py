@@ -48,7 +48,7 @@ class Refusals(ProjectTest):
             with self.subTest(name):
                 self.assertIn("lower-case letters", self.refused("--kind", "mixing", "--", name))
         self.assertIn("40 fit", self.refused("r" * 41, "--kind", "mixing"))
-        self.assertIn("CMake's own", self.refused("test", "--kind", "mixing"))
+        self.assertIn("target of CMake", self.refused("test", "--kind", "mixing"))
         self.assertEqual(list(WORK.iterdir()), [])
 
     def test_kinds(self):

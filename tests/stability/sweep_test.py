@@ -199,7 +199,7 @@ list: [{{time.scheme: rk4}}, {{operators: [{{use: org.example.hostile}}]}}]
         sweep = self.sweep("0.1, 0.2")
         words = self.run_sweep(sweep, DONE, "--slurm", "--no-submit")
         script = self.folder / "out" / "sweep.sbatch"
-        self.assertIn(f"sbatch '{script}'", words)
+        self.assertIn(f"sbatch {script}", words)
         subprocess.run(["bash", "-n", str(script)], check=True)
         self.assertIn("#SBATCH --array=0-1%2\n", script.read_text())
         subprocess.run(["bash", str(script)], check=True, timeout=LIMIT, cwd="/",

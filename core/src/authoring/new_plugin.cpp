@@ -49,8 +49,10 @@ void check_name(const std::string& name) {
                                              name.size(), longest_name));
   }
   if (std::find(taken_targets.begin(), taken_targets.end(), name) != taken_targets.end()) {
-    throw Error(ExitCode::usage,
-                fmt::format("'{}' is the name of a target of CMake's own; choose another", name));
+    throw Error(
+        ExitCode::usage,
+        fmt::format("'{}' is the name of a target of CMake or of the project; choose another",
+                    name));
   }
 }
 

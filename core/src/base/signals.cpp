@@ -1,17 +1,26 @@
 #include "base/signals.hpp"
 
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 
 namespace pileus {
 
 namespace {
 
 std::atomic<int> requested{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait for a lock");
+std::atomic<bool> interrupted{false};
+std::atomic<std::int64_t> first_termination{0};  // monotonic ns; 0: none
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free &&
+                  std::atomic<std::int64_t>::is_always_lock_free,
+              "a signal handler must not wait for a lock");
+
+/// Programs such as timeout(1) send one request twice, to the process and to its group.
+constexpr std::int64_t one_request = 500'000'000;  // ns
 
 /// Only async-signal-safe calls from here on (signal-safety(7)).
 void restore_terminal_and_die(int signal) {
@@ -33,10 +42,25 @@ void restore_terminal_and_die(int signal) {
   _exit(128 + signal);
 }
 
+std::int64_t monotonic_time() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+/// Whether a stop was asked for before in this way, so that asking again means at once.
+bool is_repeated(int signal) {
+  if (signal == SIGINT) return interrupted.exchange(true);
+  if (signal != SIGTERM) return false;
+  const std::int64_t now = monotonic_time();
+  std::int64_t first = 0;
+  return !first_termination.compare_exchange_strong(first, now) && now - first > one_request;
+}
+
 void on_stop_signal(int signal) {
   const int saved_errno = errno;
-  const int before = requested.exchange(signal);
-  if (signal == SIGINT && before == SIGINT) restore_terminal_and_die(signal);
+  requested.store(signal);
+  if (is_repeated(signal)) restore_terminal_and_die(signal);
   errno = saved_errno;
 }
 
@@ -58,6 +82,9 @@ int stop_signal() {
 }
 void request_stop(int signal) {
   requested.store(signal);
+  if (signal != 0) return;
+  interrupted.store(false);
+  first_termination.store(0);
 }
 
 }  // namespace pileus

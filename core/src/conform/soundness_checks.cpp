@@ -77,11 +77,11 @@ void expect_closed(const Case& c, const Frame& before, const Frame& after, const
     const long double allowed =
         64 * 1.1e-16L * (then.size + now.size + std::abs(static_cast<long double>(done.ledger[b])));
     if (std::abs(defect) > allowed && std::isfinite(static_cast<double>(now.sum)))
-      fail(
-          fmt::format("a step of {} changes by {:.6g}, of which {:.6g} are booked: {:.3g} of what "
-                      "there is are unaccounted for",
-                      c.table->budgets[b], static_cast<double>(now.sum - then.sum), done.ledger[b],
-                      static_cast<double>(defect / std::max(then.size, 1e-300L))));
+      fail(fmt::format(
+          "a step of {} changes by {:.6g}, of which {:.6g} are booked: {:.3g} are "
+          "unaccounted for, {:.3g} of what there is",
+          c.table->budgets[b], static_cast<double>(now.sum - then.sum), done.ledger[b],
+          static_cast<double>(defect), static_cast<double>(defect / std::max(then.size, 1e-300L))));
   }
 }
 

@@ -145,7 +145,7 @@ void Loop::run() {
     if (error.code() != ExitCode::numerical && error.code() != ExitCode::plugin) throw;
     const std::string bundle =
         write_failure(directory_.path(), error, *simulation_, scene_.resolved_yaml);
-    message_ += fmt::format(" The state is in {}.", bundle);
+    message_ += fmt::format("{} The state is in {}.", message_.ends_with('.') ? "" : ".", bundle);
     write_status("failed");
     throw Error(error.code(), message_);
   }

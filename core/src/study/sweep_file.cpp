@@ -75,7 +75,7 @@ void complete_range(Reader& reader, const Node& node, void* object) {
   if (range.scale == SampleRange::Scale::log && !(range.low > 0))
     reader.problem(range.low_text, "a logarithmic scale needs a 'low' above 0");
   if (range.whole && (range.low != std::floor(range.low) || range.high != std::floor(range.high)))
-    reader.problem(range.low_text, "whole numbers lie between two whole numbers");
+    reader.problem(range.low_text, "with 'whole', 'low' and 'high' have to be whole numbers");
 }
 
 const scene::Table& range_table() {

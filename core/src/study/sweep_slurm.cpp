@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "base/shell_word.hpp"
 #include "output/posix_file.hpp"
 #include "study/scene_settings.hpp"
 #include "study/sweep_files.hpp"
@@ -15,13 +16,6 @@ namespace pileus::study {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A word of a shell command: between single quotes, each of its own replaced by '\''.
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 /// Text that stays on its line.
 std::string one_line(std::string text) {

@@ -50,6 +50,32 @@ TEST(Signals, repeated_termination_requests_do_not_kill) {
             42);
 }
 
+TEST(Signals, a_termination_asked_for_again_later_ends_the_process) {
+  EXPECT_EQ(ending_of([] {
+              raise(SIGTERM);
+              usleep(600'000);
+              raise(SIGTERM);
+            }),
+            -SIGTERM);
+}
+
+// Ctrl-C reaches a sweep and its members, and the sweep passes a SIGTERM on: one request.
+TEST(Signals, an_interrupt_and_a_termination_are_one_request) {
+  EXPECT_EQ(ending_of([] {
+              raise(SIGINT);
+              usleep(600'000);
+              raise(SIGTERM);
+              _exit(42);
+            }),
+            42);
+  EXPECT_EQ(ending_of([] {
+              raise(SIGINT);
+              raise(SIGTERM);
+              raise(SIGINT);
+            }),
+            -SIGINT);
+}
+
 TEST(Signals, an_interrupt_after_another_request_is_still_the_first) {
   EXPECT_EQ(ending_of([] {
               raise(SIGUSR1);

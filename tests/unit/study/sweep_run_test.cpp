@@ -213,7 +213,7 @@ TEST_F(RunSweep, ABatchScriptNamesOneTaskPerMember) {
                                           "/sweeps/it's.yaml", "/out");
   EXPECT_NE(script.find("#SBATCH --array=0-3%2\n"), std::string::npos) << script;
   EXPECT_NE(script.find("#SBATCH --cpus-per-task=3\n"), std::string::npos);
-  EXPECT_NE(script.find("exec '/a b/pileus' sweep '/sweeps/it'\\''s.yaml' --out '/out'"),
+  EXPECT_NE(script.find("exec '/a b/pileus' sweep '/sweeps/it'\\''s.yaml' --out /out"),
             std::string::npos)
       << script;
 }
