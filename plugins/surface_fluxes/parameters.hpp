@@ -106,7 +106,9 @@ struct Parameters {
                     .doc("as stated, or that of the sea under the stress");
     roughness_length = d.number("roughness_length", "m", 1e-4)
                            .range(1e-8, 100.0)
-                           .doc("z_0, below half the height of a cell");
+                           .doc(
+                               "z_0, below half the height of a cell, and below "
+                               "coefficient_height where a bulk coefficient is used");
     heat_roughness_length = d.number("heat_roughness_length", "m", 0.0)
                                 .range(0.0, 100.0)
                                 .doc("z_0h of heat and water; 0: that of the wind");

@@ -74,6 +74,7 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
     friction_velocity_ = profile(parameters_.friction_velocity);
     theta_ = profile(parameters_.theta);
     humidity_ = profile(parameters_.humidity);
+    check_bulk();
   }
 
   /// The force of the ground moves or stops the air of the lowest cell within the limit.
@@ -142,6 +143,17 @@ class SurfaceFluxes : public Operator<SurfaceFluxes> {
   double reach_of(const Block& block, const Ground& ground) const {
     const double read = needs_air(block) ? 2 * ground.depth : ground.depth;
     return settings_.momentum == Momentum::none ? read : std::max(read, stress_depth(ground));
+  }
+
+  /// Needs no mesh: found before the first step.
+  void check_bulk() const {
+    const bool bulk =
+        settings_.scalar_flux == ScalarFlux::bulk || settings_.momentum == Momentum::bulk;
+    if (bulk && !settings_.bulk.is_above(settings_.layer.roughness))
+      throw Failure(
+          "roughness_length has to be below coefficient_height: the coefficients of bulk formulas "
+          "are those of a height in the air, adjusted by ln(coefficient_height/roughness_length)",
+          PILEUS_E_CONFIG);
   }
 
   void check(const Block& block, const Ground& ground) const {

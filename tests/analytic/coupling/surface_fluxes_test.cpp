@@ -244,6 +244,28 @@ TEST(SurfaceFluxes, LimitsTheStep) {
               0.5 * std::cbrt(2500 / (2 * 7.848e-3)), 1e-9);
 }
 
+/// A coefficient of the height of the roughness would be adjusted to nothing, one of a height below
+/// it to anything, as squares hide the sign of the logarithm. No step is needed to see that.
+TEST(SurfaceFluxes, BulkCoefficientsAreOfAHeightAboveTheRoughness) {
+  const auto failure = [](Settings settings, const char* height, const char* roughness) {
+    settings.emplace_back("coefficient_height", height);
+    settings.emplace_back("roughness_length", roughness);
+    try {
+      Air<3> air(box, settings, {"liquid_water_potential_temperature"});
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const Settings& bulk : {Settings{{"momentum", "bulk"}}, Settings{{"scalar_flux", "bulk"}}}) {
+    for (const char* roughness : {"20 m", "30 m"})
+      EXPECT_NE(failure(bulk, "20 m", roughness).find("below coefficient_height"),
+                std::string::npos);
+    EXPECT_EQ(failure(bulk, "20 m", "19 m"), "");
+  }
+  EXPECT_EQ(failure({{"momentum", "monin_obukhov"}}, "20 m", "20 m"), "");
+}
+
 TEST(SurfaceFluxes, WhatCannotBeIsSaid) {
   const auto failure = [](const Settings& settings, const char* carried) {
     try {
