@@ -38,7 +38,7 @@ struct Exchange {
   double wind = 0;               // U, gusts included, m s-1
   double stability = 0;          // ζ = z_1/L
   double transfer = 0;  // m s-1; <w'φ'> = transfer (φ_s − φ_1) for temperature and humidity
-  bool coupled = true;  // false: so stable that nothing is exchanged
+  bool coupled = true;  // false: beyond the largest downward flux, nothing is exchanged
   int evaluations = 0;  // of the profile functions
   /// Stress over wind, m s-1: τ = drag u.
   double drag() const { return wind > 0 ? friction_velocity * friction_velocity / wind : 0.0; }
@@ -61,9 +61,10 @@ class Similarity {
 
   /// Of a given flux <w'θ_v'> (K m s-1).
   ///
-  /// Where it is downward, the layer has to carry it: the flux that a wind can carry has a maximum
-  /// over ζ, and the branch of solutions from neutral ends there. A larger flux has no solution:
-  /// then the air is decoupled from the ground, u* = 0.
+  /// Where it is downward, the layer has to carry it. If the flux that a wind can carry has a
+  /// maximum over ζ, the branch of solutions from neutral ends there, and beyond it the air is
+  /// decoupled from the ground, u* = 0. With Dyer's functions, capped at ζ = 1, a smooth ground,
+  /// ln(z_1/z_0) > 10 (1 − z_0/z_1), has no maximum: u* falls on towards κU/(6 ln(z_1/z_0)).
   Exchange of_flux(double speed, double flux) const {
     const double gust = gust_speed(std::max(flux, 0.0));
     const double wind = effective_wind(speed, gust);
@@ -173,7 +174,8 @@ class Similarity {
              profile_m(zeta);
     };
     if (s_.functions == StabilityFunctions::businger_dyer) {
-      // Up to ζ = 1 it is F_m = 15 ζ (1 − z_0/z_1); beyond, φ grows no more and F_m does.
+      // Up to ζ = 1 it is F_m = 15 ζ (1 − z_0/z_1); beyond, φ grows no more and F_m does, so that
+      // what has not ended by then never ends.
       const double end = log_m_ / (10.0 * (1.0 - layer_.roughness / layer_.height));
       return end <= 1 ? end : greatest_stability;
     }

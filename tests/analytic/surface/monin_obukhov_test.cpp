@@ -195,6 +195,46 @@ TEST(Similarity, DecouplesBeyondTheLargestDownwardFlux) {
   EXPECT_EQ(above.drag(), 0);
 }
 
+/// u* of a wind of 5 m/s at 50 m by bisection of the equation, as the table of docs/surface.md.
+/// There is a largest flux where ln(z_1/z_0) ≤ 10 (1 − z_0/z_1): z_0 above 2.27 mm.
+TEST(Similarity, SmoothGroundCarriesWhatRoughGroundDecouplesFrom) {
+  const struct {
+    double roughness, friction[5];
+  } table[] = {{1e-3, {0.1848, 0.1750, 0.0793, 0.0520, 0.0331}},
+               {5e-3, {0.2171, 0.2090, 0, 0, 0}},
+               {0.1, {0.3218, 0.3166, 0.2908, 0, 0}}};
+  constexpr double fluxes[] = {0, -0.001, -0.005, -0.02, -0.5};
+  for (const auto& row : table)
+    for (int i = 0; i < 5; ++i) {
+      const Similarity layer(without_gusts(), {50, row.roughness, row.roughness});
+      const Exchange e = layer.of_flux(5, fluxes[i]);
+      EXPECT_NEAR(e.friction_velocity, row.friction[i], 5.1e-5) << row.roughness << fluxes[i];
+      EXPECT_EQ(e.coupled, row.friction[i] > 0);
+    }
+  SimilaritySettings wilson = without_gusts();
+  wilson.functions = StabilityFunctions::wilson;
+  for (const double roughness : {1e-3, 0.1})
+    EXPECT_FALSE(Similarity(wilson, {50, roughness, roughness}).of_flux(5, -0.5).coupled);
+}
+
+/// Where no flux is the largest, u* falls without a jump: −d ln u*/d ln Q = d/(F_m − 3d) with
+/// d = φ_m(ζ) − φ_m(ζ z_0/z_1) is largest at ζ = 1, where it is 5 (1 − r)/(ln(z_1/z_0) − 10 (1 −
+/// r)), r = z_0/z_1. It never falls below κU/(6 ln(z_1/z_0)): φ = 6 all the way down.
+TEST(Similarity, SmoothGroundHasNoJump) {
+  const double z1 = 50, z0 = 1e-3, r = z0 / z1, logarithm = std::log(z1 / z0);
+  const double steepest = 5 * (1 - r) / (logarithm - 10 * (1 - r));
+  const Similarity layer(without_gusts(), {z1, z0, z0});
+  double flux = -1e-6, before = layer.of_flux(5, flux).friction_velocity;
+  while (flux > -100) {
+    flux *= 1.001;
+    const double friction = layer.of_flux(5, flux).friction_velocity;
+    ASSERT_LT(friction, before * (1 + 1e-12)) << flux;
+    ASSERT_GT(std::log(friction / before), -1.001 * steepest * std::log(1.001)) << flux;
+    before = friction;
+  }
+  EXPECT_GE(before, 0.4 * 5 / (6 * logarithm) * (1 - 1e-12));
+}
+
 /// The exchange falls with stability without a jump, over a given temperature of the ground.
 TEST(Similarity, ExchangeFallsWithTheDifference) {
   for (const StabilityFunctions f : both) {
