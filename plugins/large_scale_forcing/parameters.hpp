@@ -53,8 +53,10 @@ struct Parameters {
     wind_nudging_time = d.number("wind_nudging_time", "s", 0.0)
                             .range(0.0, 1e9)
                             .doc("in which the mean wind approaches the target e-fold; 0: never");
-    target_x = wind(d, "target_x_velocity", "wind that the mean wind is nudged to");
-    target_y = wind(d, "target_y_velocity", "the same across");
+    constexpr const char* nudged = "wind_nudging_time != 0";
+    target_x =
+        wind(d, "target_x_velocity", "wind that the mean wind is nudged to; 0: rest").when(nudged);
+    target_y = wind(d, "target_y_velocity", "the same across").when(nudged);
     geostrophic = d.toggle("geostrophic", false)
                       .doc("whether a pressure gradient balances the geostrophic wind");
     geostrophic_x =

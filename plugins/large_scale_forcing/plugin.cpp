@@ -147,15 +147,29 @@ class LargeScaleForcing : public Operator<LargeScaleForcing> {
           "buoyancy_tendency needs liquid_water_buoyancy or buoyancy, and the parcels carry "
           "neither; give potential_temperature_tendency instead",
           PILEUS_E_CONFIG);
-    if (Quantities::is_plane(block) && !given_.target.y.is_zero())
-      throw Failure("target_y_velocity is not zero, but a plane run has no wind in y; leave it out",
-                    PILEUS_E_CONFIG);
+    // Heating of buoyancy is times g/θ_00.
+    if (!given_.temperature.is_zero() && receivers.temperature < 0 &&
+        value(parameters_.gravity) == 0)
+      throw Failure(
+          "potential_temperature_tendency does nothing: parcels carry a buoyancy, which heating "
+          "changes by gravity/reference_temperature, and gravity is 0",
+          PILEUS_E_CONFIG);
+    if (Quantities::is_plane(block)) check_plane();
     if (geostrophic_ &&
         (!block.has(quantities_.coriolis) || block.in(quantities_.coriolis)[0] == 0))
       throw Failure(
           "geostrophic is on, but the run does not rotate: set background.coriolis or "
           "background.latitude of a three-dimensional scene, or switch it off",
           PILEUS_E_CONFIG);
+  }
+
+  void check_plane() const {
+    if (!given_.target.y.is_zero())
+      throw Failure("target_y_velocity is not zero, but a plane run has no wind in y; leave it out",
+                    PILEUS_E_CONFIG);
+    if (!given_.push.y.is_zero())
+      throw Failure("y_wind_tendency is not zero, but a plane run has no wind in y; leave it out",
+                    PILEUS_E_CONFIG);
   }
 
   /// What this call changes, without what happens to it.

@@ -136,6 +136,10 @@ class LargeScaleForcing(ProgramTest):
         for name, scene, code, phrases in (
                 ("negative", NUDGED.replace("10 min", "-10 min"), USAGE,
                  ("wind_nudging_time", "scene.yaml:7:")),
+                ("unnudged", NUDGED.replace("    wind_nudging_time: 10 min\n", ""), USAGE,
+                 ("target_x_velocity", "scene.yaml:7:", "wind_nudging_time != 0")),
+                ("across", NUDGED + "    y_wind_tendency: 1e-3 m/s2\n", PLUGIN,
+                 ("y_wind_tendency", "plane")),
                 ("dry", NUDGED + "    total_water_tendency: 1e-8 s-1\n", PLUGIN,
                  ("total_water_tendency", "specific_humidity")),
                 ("still", NUDGED + "    geostrophic: true\n", PLUGIN, ("background.coriolis",))):

@@ -298,8 +298,10 @@ TEST(LargeScaleForcing, of_nothing_changes_nothing) {
   EXPECT_EQ(before, std::vector<double>(run.store.vorticity(0), run.store.vorticity(0) + 500));
 }
 
-std::string refusal(const Settings& settings, double coriolis = 0) {
-  MeshRun<3> run(mesh::Grid<3>({4, 4, 4}, {0, 0, 0}, {4, 4, 4}), forcing, settings, {}, still);
+template <int D>
+std::string refusal_on(const mesh::Grid<D>& grid, const Settings& settings,
+                       std::vector<std::string> initial, double coriolis = 0) {
+  MeshRun<D> run(grid, forcing, settings, std::move(initial), still);
   run.fill(500, 2, 30);
   run.mesh.coriolis_parameter = coriolis;
   run.bind();
@@ -309,6 +311,42 @@ std::string refusal(const Settings& settings, double coriolis = 0) {
     return failure.what();
   }
   return {};
+}
+std::string refusal(const Settings& settings, double coriolis = 0) {
+  return refusal_on(mesh::Grid<3>({4, 4, 4}, {0, 0, 0}, {4, 4, 4}), settings, {}, coriolis);
+}
+
+/// What a setting asks for either happens or is refused by its name.
+TEST(LargeScaleForcing, refuses_what_could_not_act) {
+  const mesh::Grid<2> plane({4, 8}, {0, 0}, {400, 800});
+  for (const Settings& across :
+       {Settings{{"y_wind_tendency", "1e-3 m/s2"}},
+        Settings{{"wind_nudging_time", "600 s"}, {"target_y_velocity", "1 m/s"}}})
+    EXPECT_NE(refusal_on(plane, across, {}).find(across.back().first), std::string::npos);
+  EXPECT_EQ(refusal_on(plane, {{"x_wind_tendency", "1e-3 m/s2"}}, {}), "");
+
+  const Settings weightless = {{"potential_temperature_tendency", "2e-3 K/s"},
+                               {"gravity", "0 m/s2"}};
+  EXPECT_NE(refusal_on(plane, weightless, {"liquid_water_buoyancy"}).find("gravity is 0"),
+            std::string::npos);
+  EXPECT_EQ(refusal_on(plane, weightless, {theta}).find("gravity"), std::string::npos);
+
+  for (const char* target : {"target_x_velocity", "target_y_velocity"}) {
+    EXPECT_THROW(refusal({{target, "3 m/s"}}), std::logic_error) << "never nudged";
+    EXPECT_EQ(refusal({{target, "3 m/s"}, {"wind_nudging_time", "600 s"}}), "");
+  }
+}
+
+/// A target that is not stated is rest.
+TEST(LargeScaleForcing, nudges_to_rest_without_a_target) {
+  MeshRun<3> run(mesh::Grid<3>({4, 4, 10}, {0, 0, 0}, {400, 400, 1000}), forcing,
+                 {{"wind_nudging_time", "600 s"}}, {}, still);
+  run.fill(1000, 2, 23);
+  run.bind();
+  run.mesh.mean_wind = {3, 1};
+  run.step(600);
+  EXPECT_NEAR(run.mesh.mean_wind[0], 3 * std::exp(-1.0), 1e-13);
+  EXPECT_NEAR(run.mesh.mean_wind[1], std::exp(-1.0), 1e-13);
 }
 
 TEST(LargeScaleForcing, refuses_what_the_run_does_not_have) {
