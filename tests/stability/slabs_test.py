@@ -118,6 +118,15 @@ class Slabs(ProgramTest):
                 scene = self.write("scene.yaml", f"extends: {THERMAL}\ndiagnostics:\n  slabs:\n"
                                    f"    values:\n      - {{name: mine, {wrong}}}\n")
                 self.assert_refused(self.run_scene(scene), USAGE, *phrases)
-        taken = self.write("scene.yaml", f"extends: {THERMAL}\ndiagnostics: {{slabs: {{values: [\n"
-                           "  {name: volume, variable: buoyancy, measure: max}]}}\n")
-        self.assert_refused(self.run_scene(taken), USAGE, "'volume'", "another one")
+
+    def test_names_that_no_diagnostic_can_have(self):
+        for name, phrases in (("volume", ("scene.yaml:3:3", "'volume'", "another one")),
+                              ("inversion_height", ("scene.yaml:3:3", "another one")),
+                              ("time", ("scene.yaml:3:10", "its times")),
+                              ("a b/c", ("scene.yaml:3:10", "letters, digits and underscores")),
+                              ("''", ("scene.yaml:3:10", "letters, digits and underscores"))):
+            with self.subTest(name=name):
+                scene = self.write(
+                    "scene.yaml", f"extends: {THERMAL}\ndiagnostics: {{slabs: {{values: [\n"
+                    f"  {{name: {name}, variable: buoyancy, measure: max}}]}}}}\n")
+                self.assert_refused(self.run_scene(scene), USAGE, *phrases)

@@ -141,6 +141,7 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
   }
   if (slabs != nullptr) {
     slab_series_.emplace(scene, simulation, surface, *slabs);
+    slab_series_->refuse_taken([this](const std::string& name) { return index(name) >= 0; });
     add_slab_series();
   }
   values_.assign(list_.size(), 0.0);
@@ -149,10 +150,11 @@ Diagnostics::Diagnostics(const scene::Scene& scene, const Simulation& simulation
 void Diagnostics::add_slab_series() {
   for (const auto& [name, units, text] : slab_series_->outputs()) {
     if (index(name) >= 0)
-      throw Error(ExitCode::usage,
-                  fmt::format("diagnostics.slabs.values: '{}' is the name of a diagnostic that "
-                              "this run has anyway; give the value another one.",
-                              name));
+      throw Error(
+          ExitCode::usage,
+          fmt::format("diagnostics.slabs: its '{}' is also the name of another diagnostic of "
+                      "this run; leave out the section or the other one.",
+                      name));
     slab_entries_.push_back(add(name, units, text));
   }
 }

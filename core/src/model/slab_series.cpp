@@ -46,6 +46,9 @@ const std::vector<std::string>& measure_words() {
                                            scene::describe(control.where), control.name, text));
 }
 
+constexpr const char* name_taken =
+    "has the name of a diagnostic that this run has anyway; give the value another one.";
+
 std::string mean_name(double from) {
   return fmt::format("slab_mean_from_{:.17g}", from);
 }
@@ -138,13 +141,19 @@ void SlabSeries::list_asked(const scene::Scene& scene, const Simulation& simulat
     const output::Variable& variable =
         slabs_.variables()[static_cast<std::size_t>(asked_.back().profile)];
     for (const auto& other : outputs_)
-      if (other[0] == control.name) refuse(control, "has the name of another diagnostic.");
+      if (other[0] == control.name) refuse(control, name_taken);
     std::string text =
         fmt::format("{} of the slab profile {}",
                     measure_words()[static_cast<std::size_t>(control.measure)], variable.name);
     if (control.averaged_from) text += fmt::format(", mean since {:.6g} s", *control.averaged_from);
     outputs_.push_back({control.name, units_of(control.measure, variable.units), text});
   }
+}
+
+void SlabSeries::refuse_taken(
+    const std::function<bool(const std::string& name)>& is_taken) const {
+  for (const Asked& asked : asked_)
+    if (is_taken(asked.control.name)) refuse(asked.control, name_taken);
 }
 
 std::vector<double> SlabSeries::observe(const Simulation& simulation) {

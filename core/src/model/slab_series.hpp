@@ -2,6 +2,7 @@
 // what a scene asks of a profile.
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ class SlabSeries {
   /// for a variable that no slab profile of this run has.
   SlabSeries(const scene::Scene& scene, const Simulation& simulation,
              const coupling::SurfaceFields& surface, const SlabStatistics& slabs);
+
+  /// Throws Error (usage) with the line of a slab value whose name another diagnostic has.
+  void refuse_taken(const std::function<bool(const std::string& name)>& is_taken) const;
 
   /// Name, units, long name.
   const std::vector<std::array<std::string, 3>>& outputs() const { return outputs_; }

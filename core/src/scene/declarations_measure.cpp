@@ -1,13 +1,32 @@
 // The declared keys of numerics and of what is measured: exact solutions and histograms.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "scene/declarations.hpp"
 #include "scene/reader.hpp"
 
 namespace pileus::scene {
 namespace {
+
+/// What variables of a NetCDF file may be called, in part or as a whole.
+bool is_part_of_name(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+/// Refuses a name that no variable of series.nc could have; what is left out is reported elsewhere.
+void check_name(Reader& reader, const Node& node, const std::string& name) {
+  const Entry* entry = node.find("name");
+  if (entry == nullptr || entry->value.kind != Node::Kind::scalar) return;
+  if (!is_part_of_name(name) || (name.front() >= '0' && name.front() <= '9'))
+    reader.problem(entry->value, fmt::format("'{}' cannot name a diagnostic: names are letters, "
+                                             "digits and underscores, with no digit first",
+                                             name));
+}
 
 void check_exact(Reader& reader, const Node& node, void* object) {
   static_cast<ExactSolution*>(object)->where = node.where;
@@ -20,6 +39,14 @@ void check_exact(Reader& reader, const Node& node, void* object) {
 void check_reference(Reader& reader, const Node& node, void* object) {
   auto& reference = *static_cast<HistogramControl::Reference*>(object);
   reference.where = node.where;
+  if (const Entry* label = node.find("label"); label != nullptr &&
+                                               label->value.kind == Node::Kind::scalar &&
+                                               !is_part_of_name(reference.label))
+    reader.problem(
+        label->value,
+        fmt::format("'{}' cannot be part of a diagnostic's name, <name>_distance_<label>: "
+                    "labels are letters, digits and underscores",
+                    reference.label));
   const Entry* file = node.find("file");
   if (file == nullptr || file->value.kind != Node::Kind::scalar) return;
   const std::string& beside =
@@ -35,6 +62,7 @@ void check_reference(Reader& reader, const Node& node, void* object) {
 void check_histogram(Reader& reader, const Node& node, void* object) {
   auto& histogram = *static_cast<HistogramControl*>(object);
   histogram.where = node.where;
+  check_name(reader, node, histogram.name);
   if (!(histogram.low < histogram.high))
     reader.problems().add(node.where,
                           fmt::format("a histogram needs 'low' below 'high', found {} "
@@ -64,7 +92,9 @@ const Table& exact_table() {
 }
 
 void check_mode(Reader& reader, const Node& node, void* object) {
-  static_cast<ModeControl*>(object)->where = node.where;
+  auto& mode = *static_cast<ModeControl*>(object);
+  mode.where = node.where;
+  check_name(reader, node, mode.name);
   for (const char* key : {"cosine", "sine"}) {
     const Entry* formula = node.find(key);
     if (formula != nullptr && formula->value.kind == Node::Kind::scalar)
@@ -93,6 +123,12 @@ const Table& mode_table() {
   return table;
 }
 
+void check_front(Reader& reader, const Node& node, void* object) {
+  auto& front = *static_cast<FrontControl*>(object);
+  front.where = node.where;
+  check_name(reader, node, front.name);
+}
+
 const Table& front_table() {
   static const Table table = {
       .path = "diagnostics.fronts",
@@ -111,8 +147,7 @@ const Table& front_table() {
                value("height", &FrontControl::height, "m", "Height at which the front is sought.")
                    .otherwise("the ground")},
       .other = {},
-      .finish = [](Reader&, const Node& node,
-                   void* object) { static_cast<FrontControl*>(object)->where = node.where; },
+      .finish = check_front,
       .write_other = {},
       .amend_schema = {}};
   return table;
@@ -197,9 +232,23 @@ const Table& variance_budget_table() {
   return table;
 }
 
+/// A slab value's name is the whole name of a variable.
+void check_slab_name(Reader& reader, const Node& node, const SlabValueControl& control) {
+  check_name(reader, node, control.name);
+  if (control.name == "time")
+    reader.problem(node.find("name")->value,
+                   "'time' cannot name a diagnostic: it is what series.nc calls its times");
+  for (const SlabValueControl& other : reader.scene().diagnostics.slabs.values)
+    if (&other != &control && other.name == control.name && !control.name.empty())
+      reader.problems().add({node.where,
+                             fmt::format("two slab values are called '{}'", control.name), 1,
+                             other.where, "the other one is here"});
+}
+
 void check_slab_value(Reader& reader, const Node& node, void* object) {
   auto& control = *static_cast<SlabValueControl*>(object);
   control.where = node.where;
+  check_slab_name(reader, node, control);
   const bool at_height = control.measure == SlabValueControl::Measure::value;
   if (at_height && node.find("height") == nullptr)
     reader.problems().add(
