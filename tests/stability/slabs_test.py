@@ -1,11 +1,12 @@
 """Statistics of slabs from outside: what is in the files, over restarts and threads, what is refused."""
 import math
+import subprocess
 
 import netCDF4
 import numpy
 import xarray
 
-from program import THERMAL, USAGE, ProgramTest
+from program import DONE, LIMIT, PROGRAM, THERMAL, USAGE, Ended, ProgramTest, environment
 from records import differences, read
 
 # A thermal that condenses after some 200 s, on a coarse mesh; records every third sample.
@@ -118,6 +119,30 @@ class Slabs(ProgramTest):
                 scene = self.write("scene.yaml", f"extends: {THERMAL}\ndiagnostics:\n  slabs:\n"
                                    f"    values:\n      - {{name: mine, {wrong}}}\n")
                 self.assert_refused(self.run_scene(scene), USAGE, *phrases)
+                self.assert_refused(self.plan(scene), USAGE, *phrases)
+                self.assertFalse((self.folder / "results").exists())
+
+    def plan(self, scene):
+        ended = subprocess.run([PROGRAM, "plan", str(scene)], env=environment(), text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT,
+                               check=False)
+        return Ended(ended.returncode, ended.stdout, None)
+
+    def test_plan_knows_the_levels(self):
+        """Cells of 100 m: between two levels there is nothing to measure."""
+        for between, code in (("[110 m, 120 m]", USAGE), ("[110 m, 210 m]", DONE)):
+            scene = self.write("scene.yaml", f"""\
+domain: {{extent: 1 km, cells: [8, 8, 10]}}
+time: {{end: 10 min}}
+diagnostics:
+  slabs:
+    values:
+      - {{name: mine, variable: buoyancy_flux, measure: max, between: {between}}}
+""")
+            ended = self.plan(scene)
+            self.assertEqual(ended.code, code, ended.text)
+            if code == USAGE:
+                self.assert_refused(ended, USAGE, "scene.yaml:6:9", "at least one level")
 
     def test_names_that_no_diagnostic_can_have(self):
         for name, phrases in (("volume", ("scene.yaml:3:3", "'volume'", "another one")),

@@ -62,7 +62,7 @@ Loop::Loop(const scene::Scene& scene, PlannedRun planned, const output::RunDirec
   for (const coupling::BudgetTotal& total : sequence_.ledger().totals)
     budgets.push_back(total.budget);
   if (scene.diagnostics.slabs.wanted)
-    slabs_ = std::make_unique<SlabStatistics>(scene, *simulation_);
+    slabs_ = std::make_unique<SlabStatistics>(scene, simulation_->store());
   diagnostics_ =
       std::make_unique<Diagnostics>(scene, *simulation_, sequence_.surface(),
                                     sequence_.changed_quantities(), budgets, slabs_.get());

@@ -8,6 +8,7 @@
 #include "coupling/quantity_plan.hpp"
 #include "dynamics/runge_kutta.hpp"
 #include "host/search.hpp"
+#include "model/slab_series.hpp"
 #include "parcels/store.hpp"
 #include "planner/costs.hpp"
 #include "planner/survey.hpp"
@@ -84,13 +85,18 @@ std::string origin_of(const std::string& name,
   return "initial state";
 }
 
+/// A store without parcels, of the quantities that these operators and the initial state bring.
+parcels::Store store_of(const scene::Scene& scene,
+                        const std::vector<coupling::OperatorEntry>& operators) {
+  return parcels::Store(scene.domain.dimension,
+                        coupling::plan_quantities(operators, initial_names(scene)).scalars);
+}
+
 /// Numbers of a parcel if all of these operators were there with all their effects; 0 where they
 /// contradict each other.
 int columns_of(const scene::Scene& scene, const std::vector<coupling::OperatorEntry>& operators) {
   try {
-    return parcels::Store(scene.domain.dimension,
-                          coupling::plan_quantities(operators, initial_names(scene)).scalars)
-        .column_count();
+    return store_of(scene, operators).column_count();
   } catch (const Error&) {
     return 0;
   }
@@ -99,9 +105,7 @@ int columns_of(const scene::Scene& scene, const std::vector<coupling::OperatorEn
 planner::DataFlow flow_of(const scene::Scene& scene,
                           const std::vector<coupling::OperatorEntry>& operators) {
   planner::DataFlow flow;
-  const int dimension = scene.domain.dimension;
-  const parcels::Store store(dimension,
-                             coupling::plan_quantities(operators, initial_names(scene)).scalars);
+  const parcels::Store store = store_of(scene, operators);
   for (int c = 0; c < store.column_count(); ++c) {
     const int scalar = c - store.first_scalar();
     const std::string name = store.column_name(c);
@@ -116,7 +120,7 @@ planner::DataFlow flow_of(const scene::Scene& scene,
   };
   if (!items.multiplicity.empty()) add_item(items.multiplicity, "1");
   for (const parcels::ItemColumn& column : items.columns) add_item(column.name, column.units);
-  const bool three = dimension == 3;
+  const bool three = scene.domain.dimension == 3;
   flow.transformed = three ? std::vector<std::string>{"x_vorticity", "y_vorticity", "z_vorticity"}
                            : std::vector<std::string>{"vorticity"};
   flow.deposited = {"volume"};
@@ -141,6 +145,7 @@ PlannedRun plan_run(const scene::Scene& scene, std::vector<coupling::OperatorEnt
                                 planner::survey_initial_state(scene));
   const int all_columns = columns_of(scene, operators);
   run.operators = keep_called_for(run.plan, std::move(operators));
+  SlabSeries::check(scene, store_of(scene, run.operators));
   run.plan.flow = flow_of(scene, run.operators);
   run.plan.flow.bytes_left_out =
       8.0 * std::max(0, all_columns - static_cast<int>(run.plan.flow.stored.size()));

@@ -18,7 +18,7 @@ struct PlannedRun {
 ///
 /// Rules are those of schemas/effects.yaml and of a file lib<name>.effects.yaml beside a plugin.
 /// Errors  Error(ExitCode::usage) for effects nobody knows or provides, rules that cannot be read,
-///         and contradictions between the operators that stay
+///         contradictions between the operators that stay, and values of slabs that the run has not
 PlannedRun plan_run(const scene::Scene& scene, std::vector<coupling::OperatorEntry> operators);
 
 /// Reads a scene, loads its operators and plans it.

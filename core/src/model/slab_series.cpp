@@ -69,7 +69,7 @@ SlabSeries::SlabSeries(const scene::Scene& scene, const Simulation& simulation,
       heat_(heat_profile(slabs)) {
   list_flow();
   if (slabs.has_cloud()) list_cloud();
-  list_asked(scene, simulation);
+  list_asked(scene);
 }
 
 void SlabSeries::list_flow() {
@@ -99,12 +99,13 @@ void SlabSeries::list_cloud() {
   outputs_.insert(outputs_.end(), cloud.begin(), cloud.end());
 }
 
-SlabSeries::Asked SlabSeries::asked(const scene::SlabValueControl& control, double bottom,
-                                    double top) const {
-  Asked asked{control, slabs_.find(control.variable), bottom, top};
+SlabSeries::Asked SlabSeries::asked(const scene::SlabValueControl& control,
+                                    const scene::Domain& domain, const SlabStatistics& slabs) {
+  const double bottom = domain.lower.back(), top = bottom + domain.extent.back();
+  Asked asked{control, slabs.find(control.variable), bottom, top};
   if (asked.profile < 0) {
     std::vector<std::string> names;
-    for (const output::Variable& variable : slabs_.variables()) names.push_back(variable.name);
+    for (const output::Variable& variable : slabs.variables()) names.push_back(variable.name);
     const std::string nearest = nearest_word(control.variable, names);
     refuse(control,
            fmt::format("is of '{}', of which there is no slab profile in this run; {}",
@@ -121,7 +122,7 @@ SlabSeries::Asked SlabSeries::asked(const scene::SlabValueControl& control, doub
     refuse(control, fmt::format("is sought outside the domain, which reaches from {:.6g} m to "
                                 "{:.6g} m.",
                                 bottom, top));
-  const double spacing = slabs_.spacing();
+  const double spacing = slabs.spacing();
   const double levels = std::floor((asked.high - bottom) / spacing + 1e-9) -
                         std::ceil((asked.low - bottom) / spacing - 1e-9) + 1;
   const bool line = control.measure == ProfileMeasure::slope ||
@@ -134,9 +135,16 @@ SlabSeries::Asked SlabSeries::asked(const scene::SlabValueControl& control, doub
   return asked;
 }
 
-void SlabSeries::list_asked(const scene::Scene& scene, const Simulation& simulation) {
+void SlabSeries::check(const scene::Scene& scene, const parcels::Store& store) {
+  if (scene.diagnostics.slabs.values.empty()) return;
+  const SlabStatistics slabs(scene, store);
+  for (const scene::SlabValueControl& control : scene.diagnostics.slabs.values)
+    asked(control, scene.domain, slabs);
+}
+
+void SlabSeries::list_asked(const scene::Scene& scene) {
   for (const scene::SlabValueControl& control : scene.diagnostics.slabs.values) {
-    asked_.push_back(asked(control, bottom_, bottom_ + simulation.height()));
+    asked_.push_back(asked(control, scene.domain, slabs_));
     if (control.averaged_from) means_.try_emplace(*control.averaged_from);
     const output::Variable& variable =
         slabs_.variables()[static_cast<std::size_t>(asked_.back().profile)];
@@ -150,8 +158,7 @@ void SlabSeries::list_asked(const scene::Scene& scene, const Simulation& simulat
   }
 }
 
-void SlabSeries::refuse_taken(
-    const std::function<bool(const std::string& name)>& is_taken) const {
+void SlabSeries::refuse_taken(const std::function<bool(const std::string& name)>& is_taken) const {
   for (const Asked& asked : asked_)
     if (is_taken(asked.control.name)) refuse(asked.control, name_taken);
 }

@@ -23,6 +23,9 @@ class SlabSeries {
   SlabSeries(const scene::Scene& scene, const Simulation& simulation,
              const coupling::SurfaceFields& surface, const SlabStatistics& slabs);
 
+  /// The same refusals before there is a simulation: of what a scene asks of profiles that parcels
+  /// with the quantities of `store` do not have, or of heights where there are no levels.
+  static void check(const scene::Scene& scene, const parcels::Store& store);
   /// Throws Error (usage) with the line of a slab value whose name another diagnostic has.
   void refuse_taken(const std::function<bool(const std::string& name)>& is_taken) const;
 
@@ -44,8 +47,9 @@ class SlabSeries {
 
   void list_flow();
   void list_cloud();
-  void list_asked(const scene::Scene& scene, const Simulation& simulation);
-  Asked asked(const scene::SlabValueControl& control, double bottom, double top) const;
+  void list_asked(const scene::Scene& scene);
+  static Asked asked(const scene::SlabValueControl& control, const scene::Domain& domain,
+                     const SlabStatistics& slabs);
   void observe_flow(std::vector<double>& values);
   void observe_cloud(const Simulation& simulation, std::vector<double>& values);
   void observe_asked(double time, std::vector<double>& values);

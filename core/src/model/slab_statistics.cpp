@@ -64,9 +64,9 @@ std::string product_of_units(const std::string& a, const std::string& b) {
   return text.empty() ? "1" : text;
 }
 
-std::vector<SlabStatistics::Quantity> SlabStatistics::quantities_of(const Simulation& simulation) {
+std::vector<SlabStatistics::Quantity> SlabStatistics::quantities_of(const parcels::Store& store) {
   std::vector<Quantity> list;
-  const int dimension = simulation.dimension();
+  const int dimension = store.dimension();
   for (int d = 0; d < dimension; ++d) {
     const bool up = d == dimension - 1, along_x = d == 0;
     list.push_back({up        ? "z_velocity"
@@ -79,7 +79,7 @@ std::vector<SlabStatistics::Quantity> SlabStatistics::quantities_of(const Simula
                     -1, d});
   }
   list.push_back({"buoyancy", "m s-2", "", -1, -1});
-  const std::vector<parcels::Scalar>& scalars = simulation.store().scalars();
+  const std::vector<parcels::Scalar>& scalars = store.scalars();
   for (std::size_t s = 0; s < scalars.size(); ++s) {
     const parcels::Scalar& scalar = scalars[s];
     if (scalar.name == "buoyancy" || scalar.name == coupling::previous_height_name ||
@@ -93,12 +93,12 @@ std::vector<SlabStatistics::Quantity> SlabStatistics::quantities_of(const Simula
   return list;
 }
 
-SlabStatistics::SlabStatistics(const scene::Scene& scene, const Simulation& simulation)
-    : bottom_(simulation.bottom()),
-      spacing_(simulation.height() / scene.domain.cells.back()),
+SlabStatistics::SlabStatistics(const scene::Scene& scene, const parcels::Store& store)
+    : bottom_(scene.domain.lower.back()),
+      spacing_(scene.domain.extent.back() / scene.domain.cells.back()),
       cloud_threshold_(scene.diagnostics.cloud_threshold),
-      liquid_(simulation.store().find_scalar(liquid_name)),
-      quantities_(quantities_of(simulation)),
+      liquid_(store.find_scalar(liquid_name)),
+      quantities_(quantities_of(store)),
       sums_(layout(), static_cast<std::size_t>(scene.domain.cells.back()) + 1) {
   list_moments();
   if (!has_cloud()) return;

@@ -16,7 +16,8 @@ namespace pileus::model {
 /// the names and units of the run's quantities.
 class SlabStatistics {
  public:
-  SlabStatistics(const scene::Scene& scene, const Simulation& simulation);
+  /// `store` has the quantities of the run; what its parcels are does not matter yet.
+  SlabStatistics(const scene::Scene& scene, const parcels::Store& store);
 
   /// Measures the evaluated state; after Simulation::probe().
   void measure(Simulation& simulation);
@@ -53,7 +54,7 @@ class SlabStatistics {
     int direction;  // of a velocity, or −1
   };
 
-  static std::vector<Quantity> quantities_of(const Simulation& simulation);
+  static std::vector<Quantity> quantities_of(const parcels::Store& store);
   SlabLayout layout() const;
   void add(output::Variable variable, Formula formula);
   void list_moments();
