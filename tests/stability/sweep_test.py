@@ -229,3 +229,12 @@ list: [{{time.scheme: rk4}}, {{operators: [{{use: org.example.hostile}}]}}]
         self.assertIn("(member 0001)", words)
         self.assertIn("(member 0002)", words)
         self.assertFalse((self.folder / "out").exists())
+
+    def test_what_a_plan_refuses_is_refused_before_the_first_member(self):
+        scene = self.write("wave.yaml", f"extends: {WAVE}\ndiagnostics: {{slabs: {{values: [\n"
+                           "  {name: mine, variable: boyancy_flux, measure: max}]}}\n")
+        text = SWEEP.format(scene=scene, steps="0.1, 0.2", jitters="0.2", profiles="0")
+        words = self.run_sweep(self.write("sweep.yaml", text), USAGE)
+        self.assertIn("wave.yaml:3:3: error: the slab value 'mine'", words)
+        self.assertEqual(words.count("error:"), 1, words)
+        self.assertFalse((self.folder / "out").exists())

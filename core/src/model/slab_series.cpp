@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/nearest_word.hpp"
 #include "model/cloud_extent.hpp"
 #include "model/initial_state.hpp"
-#include "scene/problems.hpp"
+#include "scene/placed_error.hpp"
 
 namespace pileus::model {
 namespace {
@@ -42,8 +41,8 @@ const std::vector<std::string>& measure_words() {
 }
 
 [[noreturn]] void refuse(const scene::SlabValueControl& control, const std::string& text) {
-  throw Error(ExitCode::usage, fmt::format("{}: error: the slab value '{}' {}",
-                                           scene::describe(control.where), control.name, text));
+  throw scene::PlacedError(control.where,
+                           fmt::format("the slab value '{}' {}", control.name, text));
 }
 
 constexpr const char* name_taken =

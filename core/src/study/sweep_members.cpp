@@ -10,6 +10,7 @@
 #include "base/units.hpp"
 #include "base/version.hpp"
 #include "model/plan_run.hpp"
+#include "scene/placed_error.hpp"
 #include "scene/read_scene.hpp"
 #include "study/scene_settings.hpp"
 #include "study/study_knobs.hpp"
@@ -180,6 +181,8 @@ void check_plan(const scene::Scene& scene, const std::string& path, scene::Probl
   if (!problems.empty()) return;
   try {
     model::plan_run(scene, std::move(operators));
+  } catch (const scene::PlacedError& error) {
+    problems.add(error.where(), error.text());
   } catch (const Error& error) {
     if (error.code() != ExitCode::usage) throw;
     problems.add({path, 0, 0}, error.what());
