@@ -192,6 +192,8 @@ void complete_sweep(Reader& reader, const Node& node, void* object) {
   auto& sweep = *static_cast<Sweep*>(object);
   if (sweep.title.empty()) sweep.title = sweep.name;
   if (sweep.seed_keys.empty()) sweep.seed_keys = {"scene.seed"};
+  for (const char* name : {"seeds", "seed_keys"})
+    if (const Entry* entry = node.find(name)) sweep.seeds_where = entry->where;
   if (sweep.product.empty() && sweep.list.empty() && sweep.sample.count == 0 &&
       node.find("sample") == nullptr && sweep.seeds.empty() && node.find("seeds") == nullptr)
     reader.problem(node,

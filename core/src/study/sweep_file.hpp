@@ -49,6 +49,7 @@ struct Sweep {
   SamplePlan sample;
   std::vector<std::uint64_t> seeds;
   std::vector<std::string> seed_keys;
+  scene::Location seeds_where;  // of seed_keys, or of the seeds where there are none
   int threads = 1;
   std::vector<std::string> pictures;
   std::vector<std::string> slurm;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -27,6 +28,14 @@ struct Choice {
   std::vector<std::pair<std::size_t, ParameterValue>> values;  // by number of the parameter
   std::optional<std::uint64_t> seed;
 };
+
+/// Columns that the lists and tables of members and ensemble.nc have of their own.
+constexpr std::array<const char*, 7> own_columns = {"index",  "member", "seed",     "status",
+                                                    "sha256", "wall_s", "wall_time"};
+
+bool is_own_column(const std::string& name) {
+  return std::find(own_columns.begin(), own_columns.end(), name) != own_columns.end();
+}
 
 /// Choices of which every member has one.
 using Source = std::vector<Choice>;
@@ -68,20 +77,32 @@ class Sources {
   }
 
  private:
-  /// Declares a parameter; a key is varied by one only.
-  std::size_t add_parameter(std::string name, const std::vector<std::string>& keys,
-                            const scene::Location& where) {
-    std::vector<Parameter>& all = ensemble_.parameters;
-    for (const Parameter& other : all) {
+  /// A key is varied by one parameter, or by the seed, only: of two, one would be without effect.
+  void refuse_varied_twice(const std::vector<std::string>& keys, const scene::Location& where) {
+    for (const Parameter& other : ensemble_.parameters)
       for (const std::string& key : keys)
         if (std::find(other.keys.begin(), other.keys.end(), key) != other.keys.end())
           problems_.add(where, fmt::format("the key '{}' is varied twice", key));
-    }
+  }
+
+  /// Declares a parameter.
+  std::size_t add_parameter(std::string name, const std::vector<std::string>& keys,
+                            const scene::Location& where) {
+    std::vector<Parameter>& all = ensemble_.parameters;
+    refuse_varied_twice(keys, where);
     const auto taken = [&](const std::string& word) {
       return std::any_of(all.begin(), all.end(),
                          [&](const Parameter& other) { return other.name == word; });
     };
-    if (taken(name) && !keys.empty()) name = keys.front();  // last words may be alike
+    // Last words may be alike, or mean something else in tables: scene.seed, parcels.seed.
+    const bool is_last_word = !keys.empty() && name == last_word(keys.front());
+    if (!keys.empty() && (taken(name) || (is_last_word && is_own_column(name))))
+      name = keys.front();
+    if (is_own_column(name))
+      problems_.add(where,
+                    fmt::format("no parameter can be called '{}', as a column that all tables "
+                                "of members have; give it another 'name'",
+                                name));
     if (taken(name))
       problems_.add(where,
                     fmt::format("two parameters are called '{}'; give one another 'name'", name));
@@ -148,6 +169,7 @@ class Sources {
   void add_seeds() {
     const Sweep& sweep = ensemble_.sweep;
     if (sweep.seeds.empty()) return;
+    refuse_varied_twice(sweep.seed_keys, sweep.seeds_where);
     Source source;
     for (const std::uint64_t seed : sweep.seeds) {
       Choice choice;

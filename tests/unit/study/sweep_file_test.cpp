@@ -68,6 +68,16 @@ seeds: [7]
   EXPECT_EQ(ensemble.members[0].key.size(), 64U);
 }
 
+TEST_F(SweepFile, SeedsOverrideWhatIsSetForAllMembers) {
+  const Ensemble ensemble = ensemble_of("set: {scene.seed: 4}\nseeds: [7]\n");
+  EXPECT_EQ(ensemble.members[0].overrides.back(), "scene.seed=7");
+}
+
+TEST_F(SweepFile, AKeyWhoseLastWordIsAColumnOfTheTablesHasItsWholeName) {
+  EXPECT_EQ(labels_of("product: [{key: scene.seed, values: [7, 8]}]\n"),
+            (std::vector<std::string>{"scene.seed 7", "scene.seed 8"}));
+}
+
 TEST_F(SweepFile, ListsLeaveOutWhatTheSceneHas) {
   const Ensemble ensemble = ensemble_of(R"(
 list:
@@ -174,6 +184,12 @@ TEST_F(SweepFile, RefusesWhatMakesNoSense) {
            {"product: [{key: time.end}]\n", "'product.values' is missing"},
            {"product: [{key: time.end, values: [1, 2]}, {key: time.end, values: [3]}]\n",
             "the key 'time.end' is varied twice"},
+           {"product: [{key: scene.seed, values: [7, 8]}]\nseeds: 2\n",
+            "sweep.yaml:3:1: error: the key 'scene.seed' is varied twice"},
+           {"list: [{parcels.seed: 7}]\nseeds: 2\nseed_keys: [scene.seed, parcels.seed]\n",
+            "sweep.yaml:4:1: error: the key 'parcels.seed' is varied twice"},
+           {"product: [{name: status, key: time.end, values: [1, 2]}]\n",
+            "sweep.yaml:2:11: error: no parameter can be called 'status'"},
            {range + "low: 2, high: 1}]}\n", "'high' has to be above 'low', 2"},
            {range + "low: 2 s, high: 3}]}\n", "either both have a unit or neither"},
            {range + "low: 2 s, high: 3 m}]}\n", "'high': 'm' does not measure a time"},
