@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "base/units.hpp"
 #include "scene/reader.hpp"
@@ -152,6 +155,22 @@ scene::Key list_key() {
   return key;
 }
 
+/// A list of seeds, none of them twice: two members would be one run.
+void read_listed_seeds(Reader& reader, const Node& node, std::vector<std::uint64_t>& seeds) {
+  if (node.items.empty())
+    return reader.problem(node, "'seeds' needs at least one seed, or their number; found an empty "
+                                "list");
+  for (const Node& item : node.items) {
+    Node one = node;
+    one.items = {item};
+    const std::size_t before = seeds.size();
+    read_seeds(reader, one, seeds);
+    if (seeds.size() > before &&
+        std::find(seeds.begin(), seeds.end() - 1, seeds.back()) != seeds.end() - 1)
+      reader.problem(item, fmt::format("the seed {} is listed twice", seeds.back()));
+  }
+}
+
 /// A number of seeds, or the seeds themselves.
 scene::Key sweep_seeds_key() {
   scene::Key key;
@@ -163,7 +182,7 @@ scene::Key sweep_seeds_key() {
   key.default_doc = "the scene's own";
   key.read = [](Reader& reader, const Entry& entry, void* object) {
     auto& seeds = static_cast<Sweep*>(object)->seeds;
-    if (entry.value.kind == Node::Kind::list) return read_seeds(reader, entry.value, seeds);
+    if (entry.value.kind == Node::Kind::list) return read_listed_seeds(reader, entry.value, seeds);
     scene::Key number;
     number.name = "seeds";
     number.range.low = 1;
@@ -175,8 +194,11 @@ scene::Key sweep_seeds_key() {
   };
   key.write = [](const void*) -> scene::Json { return nullptr; };
   key.schema = [] {
+    scene::Json list = list_of_seeds();
+    list["minItems"] = 1;
+    list["uniqueItems"] = true;
     return scene::Json{
-        {"anyOf", scene::Json::array({{{"type", "integer"}, {"minimum", 1}}, list_of_seeds()})}};
+        {"anyOf", scene::Json::array({{{"type", "integer"}, {"minimum", 1}}, std::move(list)})}};
   };
   return key;
 }
@@ -188,8 +210,27 @@ const scene::Table& identity_table() {
   return table;
 }
 
+/// The name becomes that of a folder below results/sweeps and of files in it.
+void check_name(Reader& reader, const Node& node, const Sweep& sweep) {
+  const Entry* identity = node.find("sweep");
+  const Entry* name = identity == nullptr ? nullptr : identity->value.find("name");
+  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
+  const bool fits = !sweep.name.empty() && sweep.name.front() != '.' &&
+                    sweep.name.find('/') == std::string::npos &&
+                    std::none_of(sweep.name.begin(), sweep.name.end(), is_control);
+  if (fits) return;
+  std::string shown = sweep.name;
+  std::replace_if(shown.begin(), shown.end(), is_control, '?');
+  reader.problem(name == nullptr ? node : name->value,
+                 fmt::format("'{}' cannot be the name of a sweep, which is that of its folder: "
+                             "'sweep.name' expects a word without '/' that does not begin with "
+                             "'.'{}",
+                             shown, name == nullptr ? "; by default it is the file's" : ""));
+}
+
 void complete_sweep(Reader& reader, const Node& node, void* object) {
   auto& sweep = *static_cast<Sweep*>(object);
+  check_name(reader, node, sweep);
   if (sweep.title.empty()) sweep.title = sweep.name;
   if (sweep.seed_keys.empty()) sweep.seed_keys = {"scene.seed"};
   for (const char* name : {"seeds", "seed_keys"})

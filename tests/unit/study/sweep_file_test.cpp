@@ -180,6 +180,8 @@ TEST_F(SweepFile, RefusesWhatMakesNoSense) {
   for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
            {"x-note: none\n", "the sweep has no members"},
            {"seeds: 0\n", "'seeds' = 0 must be at least 1"},
+           {"seeds: []\n", "sweep.yaml:2:8: error: 'seeds' needs at least one seed"},
+           {"seeds: [1, 3, 1]\n", "sweep.yaml:2:15: error: the seed 1 is listed twice"},
            {"sample: {count: 2}\n", "'sample' needs 'ranges'"},
            {"product: [{key: time.end}]\n", "'product.values' is missing"},
            {"product: [{key: time.end, values: [1, 2]}, {key: time.end, values: [3]}]\n",
@@ -196,6 +198,16 @@ TEST_F(SweepFile, RefusesWhatMakesNoSense) {
            {range + "low: 0, high: 1, scale: log}]}\n", "needs a 'low' above 0"},
            {range + "low: soon, high: 1}]}\n", "'low' expects a number"}})
     EXPECT_NE(mistakes_of(text).find(words), std::string::npos) << text << mistakes_of(text);
+}
+
+TEST_F(SweepFile, RefusesNamesThatAreNoNameOfAFolder) {
+  for (const char* name : {"''", "a/b", "..", ".hidden", "'../other'", "/etc", "\"a\\nb\""}) {
+    const std::string words =
+        first_line_of(std::string("sweep: {name: ") + name + "}\nseeds: 2\n");
+    EXPECT_EQ(words.substr(0, 23), "sweep.yaml:2:15: error:") << name;
+    EXPECT_NE(words.find("cannot be the name of a sweep"), std::string::npos) << words;
+  }
+  EXPECT_EQ(mistakes_of("sweep: {name: v1..2 of May}\nseeds: 2\n"), "");
 }
 
 }  // namespace
