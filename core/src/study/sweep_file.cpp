@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "base/units.hpp"
@@ -158,8 +160,9 @@ scene::Key list_key() {
 /// A list of seeds, none of them twice: two members would be one run.
 void read_listed_seeds(Reader& reader, const Node& node, std::vector<std::uint64_t>& seeds) {
   if (node.items.empty())
-    return reader.problem(node, "'seeds' needs at least one seed, or their number; found an empty "
-                                "list");
+    return reader.problem(node,
+                          "'seeds' needs at least one seed, or their number; found an empty "
+                          "list");
   for (const Node& item : node.items) {
     Node one = node;
     one.items = {item};
@@ -228,9 +231,38 @@ void check_name(Reader& reader, const Node& node, const Sweep& sweep) {
                              shown, name == nullptr ? "; by default it is the file's" : ""));
 }
 
+/// Options of sbatch that the batch script sets itself.
+constexpr std::array<std::string_view, 6> own_options = {"job-name",      "array",  "ntasks",
+                                                         "cpus-per-task", "output", "signal"};
+
+/// Each becomes a line of the batch script; what would end up as a word of another kind, or undo
+/// what the script relies on, is told here and not by Slurm.
+void check_slurm(Reader& reader, const Node& node, const Sweep& sweep) {
+  const Entry* entry = node.find("slurm");
+  if (entry == nullptr) return;
+  for (std::size_t i = 0; i < sweep.slurm.size(); ++i) {
+    const std::string& option = sweep.slurm[i];
+    const Node& where = i < entry->value.items.size() ? entry->value.items[i] : entry->value;
+    const std::string name = option.substr(0, option.find_first_of("= "));
+    if (!name.starts_with("--") || name.size() < 3) {
+      reader.problem(where,
+                     fmt::format("'slurm' expects options of sbatch in their long form, such "
+                                 "as '--time=01:00:00'; found '{}'",
+                                 option));
+      continue;
+    }
+    for (const std::string_view own : own_options)  // sbatch completes shortened names
+      if (own.starts_with(name.substr(2)))
+        reader.problem(where, fmt::format("the batch script sets '--{}' itself; leave '{}' out of "
+                                          "'slurm'",
+                                          own, option));
+  }
+}
+
 void complete_sweep(Reader& reader, const Node& node, void* object) {
   auto& sweep = *static_cast<Sweep*>(object);
   check_name(reader, node, sweep);
+  check_slurm(reader, node, sweep);
   if (sweep.title.empty()) sweep.title = sweep.name;
   if (sweep.seed_keys.empty()) sweep.seed_keys = {"scene.seed"};
   for (const char* name : {"seeds", "seed_keys"})

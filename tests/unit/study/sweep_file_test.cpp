@@ -182,6 +182,11 @@ TEST_F(SweepFile, RefusesWhatMakesNoSense) {
            {"seeds: 0\n", "'seeds' = 0 must be at least 1"},
            {"seeds: []\n", "sweep.yaml:2:8: error: 'seeds' needs at least one seed"},
            {"seeds: [1, 3, 1]\n", "sweep.yaml:2:15: error: the seed 1 is listed twice"},
+           {"seeds: 2\nslurm: [--time=3, time=3]\n",
+            "sweep.yaml:3:19: error: 'slurm' expects options of sbatch in their long form"},
+           {"seeds: 2\nslurm: ['--array=0-3']\n",
+            "sweep.yaml:3:9: error: the batch script sets '--array' itself"},
+           {"seeds: 2\nslurm: ['--cpus-per 4']\n", "sets '--cpus-per-task' itself"},
            {"sample: {count: 2}\n", "'sample' needs 'ranges'"},
            {"product: [{key: time.end}]\n", "'product.values' is missing"},
            {"product: [{key: time.end, values: [1, 2]}, {key: time.end, values: [3]}]\n",
@@ -200,10 +205,13 @@ TEST_F(SweepFile, RefusesWhatMakesNoSense) {
     EXPECT_NE(mistakes_of(text).find(words), std::string::npos) << text << mistakes_of(text);
 }
 
+TEST_F(SweepFile, OptionsBesidesThoseOfTheScriptAreAccepted) {
+  EXPECT_EQ(mistakes_of("seeds: 2\nslurm: [--ntasks-per-node=4, --comment=a -b]\n"), "");
+}
+
 TEST_F(SweepFile, RefusesNamesThatAreNoNameOfAFolder) {
   for (const char* name : {"''", "a/b", "..", ".hidden", "'../other'", "/etc", "\"a\\nb\""}) {
-    const std::string words =
-        first_line_of(std::string("sweep: {name: ") + name + "}\nseeds: 2\n");
+    const std::string words = first_line_of(std::string("sweep: {name: ") + name + "}\nseeds: 2\n");
     EXPECT_EQ(words.substr(0, 23), "sweep.yaml:2:15: error:") << name;
     EXPECT_NE(words.find("cannot be the name of a sweep"), std::string::npos) << words;
   }
