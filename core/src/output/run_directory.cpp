@@ -120,17 +120,19 @@ bool create_lock(const std::filesystem::path& lock, const std::string& text) {
   return true;
 }
 
+std::string in_use_by(const LockHolder& holder, const std::filesystem::path& folder) {
+  return fmt::format(
+      "{}: the folder is in use by process {} on {}. If that process no longer exists, delete {}.",
+      folder.string(), holder.pid, holder.host.empty() ? "an unknown host" : holder.host,
+      (folder / lock_name).string());
+}
+
 void take_lock(const std::filesystem::path& folder, const std::string& text) {
   const std::filesystem::path lock = folder / lock_name;
   const FolderGuard guard(folder);
   if (create_lock(lock, text)) return;
   const LockHolder holder = LockHolder::parse(read_text_file(lock));
-  if (!holder.is_gone())
-    throw Error(ExitCode::file,
-                fmt::format("{}: the folder is in use by process {} on {}. If that process no "
-                            "longer exists, delete {}.",
-                            folder.string(), holder.pid,
-                            holder.host.empty() ? "an unknown host" : holder.host, lock.string()));
+  if (!holder.is_gone()) throw Error(ExitCode::file, in_use_by(holder, folder));
   log(LogLevel::info, fmt::format("{}: taking over the lock of process {}, which is gone.",
                                   folder.string(), holder.pid));
   ::unlink(lock.c_str());
@@ -140,6 +142,18 @@ void take_lock(const std::filesystem::path& folder, const std::string& text) {
 }
 
 }  // namespace
+
+std::string reason_in_use(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder / lock_name, error)) return {};
+  try {
+    const FolderGuard guard(folder);  // a lock is complete when its writer lets go of it
+    const LockHolder holder = LockHolder::parse(read_text_file(folder / lock_name));
+    return holder.is_gone() ? std::string() : in_use_by(holder, folder);
+  } catch (const Error&) {
+    return {};  // it was given back in this moment
+  }
+}
 
 bool holds_run(const std::filesystem::path& folder) {
   return !run_files(folder).empty();

@@ -40,6 +40,11 @@ class RunDirectory {
   std::string lock_text_;
 };
 
+/// Why the folder cannot be taken: another process, named, holds it. Empty where none does, or one
+/// of this host that no longer lives. Changes nothing; to be asked before anything in a folder is
+/// touched that is then handed to a process which takes it.
+std::string reason_in_use(const std::filesystem::path& folder);
+
 /// Whether the folder holds files of a run.
 bool holds_run(const std::filesystem::path& folder);
 

@@ -70,6 +70,8 @@ class Pool {
     MemberRecord& record = result_.records[index];
     const fs::path folder = member_folder(result_.directory, index);
     fs::create_directories(folder);
+    if (const std::string reason = output::reason_in_use(folder); !reason.empty())
+      return leave_alone(index, reason);
     ProcessRequest process{result_.ensemble.sweep.scene_path(),
                            member.overrides,
                            folder,
@@ -93,6 +95,15 @@ class Pool {
     const bool well = record.status == Status::done;
     if (record.status != Status::stopped)
       progress_.end(member, outcome_words(record, taken.count()), well);
+  }
+
+  /// What a member that another process runs has, its record and its log are that process's.
+  void leave_alone(std::size_t index, const std::string& reason) {
+    if (request_.member) throw Error(ExitCode::file, reason);
+    const std::lock_guard lock(mutex_);
+    result_.in_use.push_back(
+        fmt::format("member {} was left alone: {}", index_text(index), reason));
+    result_.records[index].status = Status::running;
   }
 
   static void conclude(const ProcessResult& ended, MemberRecord& record) {
@@ -213,7 +224,7 @@ std::string count_words(const SweepResult& result) {
 
 ExitCode SweepResult::code() const {
   if (stopped) return ExitCode::stopped;
-  int worst = 0;
+  int worst = in_use.empty() ? 0 : static_cast<int>(ExitCode::file);
   for (const MemberRecord& record : records)
     if (record.status == Status::failed || record.status == Status::stopped)
       worst = std::max(worst, record.code);
@@ -263,6 +274,7 @@ SweepResult run_sweep(const SweepRequest& request, const SweepProgress::Options&
   }
   write_member_lists(result);
   out << count_words(result) << '\n';
+  for (const std::string& reason : result.in_use) out << reason << '\n';
   if (result.stopped) {
     progress.message(fmt::format("stopped; the same command continues the sweep in {}",
                                  result.directory.string()));

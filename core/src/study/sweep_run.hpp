@@ -31,6 +31,7 @@ struct SweepResult {
   std::vector<MemberRecord> records;  // by member
   std::filesystem::path directory;
   bool stopped = false;
+  std::vector<std::string> in_use;  // why members were left alone: other processes run them
   /// done, stopped, or the largest exit code of a member.
   ExitCode code() const;
 };

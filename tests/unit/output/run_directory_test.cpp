@@ -89,6 +89,7 @@ TEST(RunDirectory, lock_of_a_dead_process_is_taken_over) {
             }),
             7);
   EXPECT_TRUE(std::filesystem::exists(folder / "run.lock"));
+  EXPECT_EQ(reason_in_use(folder.path()), "");
   EXPECT_EQ(refusal(folder.path(), Mode::fresh), "");
 }
 
@@ -106,6 +107,7 @@ TEST(RunDirectory, lock_of_a_living_process_or_another_host_is_respected) {
   std::ofstream(folder / "run.lock") << "1 1 another-host.example\n";
   const std::string message = refusal(folder.path(), Mode::force);
   EXPECT_NE(message.find("process 1 on another-host.example"), std::string::npos) << message;
+  EXPECT_EQ(reason_in_use(folder.path()), message);
   EXPECT_TRUE(std::filesystem::exists(folder / "run.lock"));
   std::filesystem::remove(folder / "run.lock");
 

@@ -11,7 +11,9 @@
 
 #include "base/signals.hpp"
 #include "output/field_file.hpp"
+#include "output/posix_file.hpp"
 #include "output/read_fields.hpp"
+#include "output/run_directory.hpp"
 #include "study/sweep_slurm.hpp"
 #include "study_text.hpp"
 
@@ -74,6 +76,7 @@ product: [{key: time.step.alpha, values: [0.1, 0.2, 0.3, 0.4]}]
     return run_sweep(request_, {.quiet = true}, messages, table_, runner);
   }
   fs::path out(const std::string& name) const { return folder_ / "out" / name; }
+  std::string text_of(const std::string& name) const { return output::read_text_file(out(name)); }
 
   SweepRequest request_;
   std::ostringstream table_;
@@ -198,6 +201,31 @@ TEST_F(RunSweep, ReportsTablesOfMembers) {
   std::ifstream list(out("members.tsv"));
   std::getline(list, header);
   EXPECT_EQ(header, "index\talpha\tseed\tstatus\tsha256\twall_s");
+}
+
+TEST_F(RunSweep, AMemberThatAnotherProcessRunsIsNotTouched) {
+  MadeUpMembers members;
+  members.heal();
+  request_.member = 0;
+  run(members);
+  write("out/members/0001/log.txt", "what it has written");
+  write("out/members/0001/member.json", "its record");
+  const output::RunDirectory held(out("members/0001"), output::RunDirectory::Mode::resume);
+  request_.member = 1;
+  try {
+    run(members);
+    FAIL() << "the member is in use";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::file);
+    EXPECT_NE(std::string(error.what()).find("the folder is in use by process"), std::string::npos);
+  }
+  request_.member.reset();
+  EXPECT_EQ(run(members).code(), ExitCode::file);  // the others are run
+  EXPECT_NE(table_.str().find("2 of 4 members done, 1 failed, 1 running"), std::string::npos)
+      << table_.str();
+  EXPECT_NE(table_.str().find("member 0001 was left alone: "), std::string::npos);
+  EXPECT_EQ(text_of("members/0001/log.txt"), "what it has written");
+  EXPECT_EQ(text_of("members/0001/member.json"), "its record");
 }
 
 TEST_F(RunSweep, MistakesLeaveNothingBehind) {
