@@ -15,6 +15,7 @@
 #include "output/checkpoint.hpp"
 #include "output/posix_file.hpp"
 #include "output/run_directory.hpp"
+#include "study/member_results.hpp"
 #include "study/sweep_collection.hpp"
 #include "study/sweep_files.hpp"
 
@@ -253,9 +254,9 @@ SweepResult run_sweep(const SweepRequest& request, const SweepProgress::Options&
   if (request.member && *request.member >= members)
     throw Error(ExitCode::usage, fmt::format("the sweep has the members 0 to {}, not {}",
                                              members - 1, *request.member));
-  for (const Member& member : result.ensemble.members)
-    result.records.push_back(member.key.empty() ? MemberRecord()
-                                                : load_record(result.directory, member));
+  std::vector<std::string> problems;
+  result.records = load_records(result.directory, result.ensemble, problems);
+  for (const std::string& problem : problems) out << problem << '\n';
   SweepProgress progress(messages, options, request.member ? 1 : members);
   if (request.member) {
     run_members(request, result, progress, run);

@@ -8,6 +8,7 @@
 
 #include "base/shell_word.hpp"
 #include "output/posix_file.hpp"
+#include "study/member_results.hpp"
 #include "study/scene_settings.hpp"
 #include "study/sweep_files.hpp"
 
@@ -92,8 +93,9 @@ void hand_to_slurm(const SweepRequest& request, bool submit, std::ostream& out) 
   SweepResult result;
   result.ensemble = read_ensemble(request.path);
   result.directory = sweep_folder(request, result.ensemble.sweep);
-  for (const Member& member : result.ensemble.members)
-    result.records.push_back(load_record(result.directory, member));
+  std::vector<std::string> problems;
+  result.records = load_records(result.directory, result.ensemble, problems);
+  for (const std::string& problem : problems) out << problem << '\n';
   write_member_lists(result);
   const fs::path folder = fs::canonical(result.directory);
   const fs::path script = folder / "sweep.sbatch";

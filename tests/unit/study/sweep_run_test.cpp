@@ -56,7 +56,7 @@ class RunSweep : public StudyTest {
  protected:
   void SetUp() override {
     StudyTest::SetUp();
-    write("cube.yaml", cube_scene + "output: {series: {every: 1 s}}\n");
+    write("cube.yaml", cube_scene + "output: {series: {every: 1 s}, profiles: {every: 0}}\n");
     request_.path = write("steps.yaml", R"(
 scene: cube.yaml
 product: [{key: time.step.alpha, values: [0.1, 0.2, 0.3, 0.4]}]
@@ -226,6 +226,32 @@ TEST_F(RunSweep, AMemberThatAnotherProcessRunsIsNotTouched) {
   EXPECT_NE(table_.str().find("member 0001 was left alone: "), std::string::npos);
   EXPECT_EQ(text_of("members/0001/log.txt"), "what it has written");
   EXPECT_EQ(text_of("members/0001/member.json"), "its record");
+}
+
+TEST_F(RunSweep, AMemberWithoutReadableResultsIsNotDone) {
+  MadeUpMembers members;
+  members.heal();
+  request_.copy = true;
+  run(members);
+  fs::remove(out("members/0000/series.nc"));
+  fs::resize_file(out("members/0003/series.nc"), fs::file_size(out("members/0003/series.nc")) / 2);
+  request_.collect_only = true;
+  run(members);
+  EXPECT_EQ(members.count(), 4);
+  const std::string words = table_.str();
+  EXPECT_NE(words.find("1 of 4 members done, 1 failed, 2 waiting"), std::string::npos) << words;
+  EXPECT_NE(words.find("member 0000 counts as not done: " + out("members/0000/series.nc").string() +
+                       " is missing"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("member 0003 counts as not done: " + out("members/0003/series.nc").string()),
+            std::string::npos)
+      << words;
+  EXPECT_DOUBLE_EQ(output::ResultsFile(out("ensemble.nc")).read("energy_mean")[1], 1.14);
+  request_.collect_only = false;
+  run(members);
+  EXPECT_EQ(members.count(), 6);
+  EXPECT_NE(table_.str().find("3 of 4 members done, 1 failed"), std::string::npos) << table_.str();
 }
 
 TEST_F(RunSweep, MistakesLeaveNothingBehind) {
