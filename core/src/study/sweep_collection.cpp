@@ -260,6 +260,28 @@ void write_file(const SweepRequest& request, const SweepResult& result,
                          provenance_of(result, referred));
 }
 
+/// Says which folders below members/ belong to no member, for the sweep had more of them once.
+void name_former_members(const SweepResult& result, std::ostream& out) {
+  constexpr std::size_t most_named = 8;
+  const fs::path members = result.directory / "members";
+  std::vector<std::string> former;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(members, none)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_index = name.size() >= 4 && name.size() < 10 &&
+                          name.find_first_not_of("0123456789") == std::string::npos;
+    if (is_index && std::stoul(name) >= result.records.size()) former.push_back(name);
+  }
+  if (former.empty()) return;
+  std::sort(former.begin(), former.end());
+  std::string names;
+  for (std::size_t i = 0; i < std::min(former.size(), most_named); ++i)
+    names += (i == 0 ? "" : ", ") + former[i];
+  if (former.size() > most_named) names += fmt::format(" and {} more", former.size() - most_named);
+  out << fmt::format("{}: {} of an earlier, larger sweep; kept, and not collected\n",
+                     members.string(), names);
+}
+
 }  // namespace
 
 std::size_t CollectedStream::record_size() const {
@@ -299,7 +321,11 @@ void collect(const SweepRequest& request, const SweepResult& result, std::ostrea
   const bool has_series = !streams.empty();
   if (auto profiles = collect_stream(result, "profiles.nc", "profile_", profiles_every))
     streams.push_back(std::move(*profiles));
-  if (!streams.empty()) {
+  // What an earlier collection left would be taken for that of the tables beside it.
+  if (request.draw || !has_series) remove_pictures(result);
+  if (streams.empty()) {
+    fs::remove(result.directory / "ensemble.nc");
+  } else {
     write_file(request, result, streams);
     made += ", ensemble.nc";
   }
@@ -308,6 +334,7 @@ void collect(const SweepRequest& request, const SweepResult& result, std::ostrea
     made += " and the pictures";
   }
   out << fmt::format("{}: {}\n", result.directory.string(), made);
+  name_former_members(result, out);
 }
 
 }  // namespace pileus::study

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "base/nearest_word.hpp"
 #include "study/scene_settings.hpp"
 #include "study/sweep_statistics.hpp"
 
 namespace pileus::study {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -135,6 +138,16 @@ BandPicture band_picture(const CollectedStream& series, std::size_t variable,
     picture.members.emplace_back(first, first + static_cast<std::ptrdiff_t>(size));
   }
   return picture;
+}
+
+void remove_pictures(const SweepResult& result) {
+  const std::string prefix = identifier(result.ensemble.sweep.name) + "_";
+  std::vector<fs::path> scripts;
+  for (const auto& entry : fs::directory_iterator(result.directory))
+    if (entry.path().extension() == ".gp" && entry.path().filename().string().starts_with(prefix))
+      scripts.push_back(entry.path());
+  for (fs::path file : scripts)  // a picture without its script is not ours
+    for (const char* ending : {".svg", ".png", ".gp"}) fs::remove(file.replace_extension(ending));
 }
 
 void draw_spread(const SweepResult& result, const CollectedStream& series, std::ostream& out) {

@@ -24,6 +24,9 @@ PictureSize size_of(const BandPicture& picture);
 BandPicture band_picture(const CollectedStream& series, std::size_t variable,
                          const std::string& title, std::size_t members);
 
+/// Removes the pictures of an earlier collection from the sweep's folder.
+void remove_pictures(const SweepResult& result);
+
 /// Draws the series that the sweep asks for, or a few, to <name>_<series>.svg, .png and .gp in the
 /// sweep's folder. A series that does not exist is named in `out`, with the nearest.
 void draw_spread(const SweepResult& result, const CollectedStream& series, std::ostream& out);

@@ -254,6 +254,25 @@ TEST_F(RunSweep, AMemberWithoutReadableResultsIsNotDone) {
   EXPECT_NE(table_.str().find("3 of 4 members done, 1 failed"), std::string::npos) << table_.str();
 }
 
+TEST_F(RunSweep, NothingOfAnEarlierCollectionStaysBesideNewTables) {
+  MadeUpMembers members;
+  run(members);
+  const std::vector<std::string> collected = {"ensemble.nc", "steps_energy.gp", "steps_energy.svg",
+                                              "steps_energy.png"};
+  for (const char* name :
+       {"steps_energy.gp", "steps_energy.svg", "steps_energy.png", "steps_mine.png", "notes.gp"})
+    write(std::string("out/") + name, "drawn");
+  write("steps.yaml", "scene: cube.yaml\nproduct: [{key: time.step.alpha, values: [0.5, 0.6]}]\n");
+  request_.collect_only = true;
+  run(members);
+  for (const std::string& name : collected) EXPECT_FALSE(fs::exists(out(name))) << name;
+  EXPECT_TRUE(fs::exists(out("steps_mine.png")));
+  EXPECT_TRUE(fs::exists(out("notes.gp")));
+  EXPECT_NE(table_.str().find("members: 0002, 0003 of an earlier, larger sweep"), std::string::npos)
+      << table_.str();
+  EXPECT_TRUE(fs::exists(out("members/0003")));
+}
+
 TEST_F(RunSweep, MistakesLeaveNothingBehind) {
   write("steps.yaml", "scene: cube.yaml\nproduct: [{key: time.step.alpha, values: [-1]}]\n");
   MadeUpMembers members;
