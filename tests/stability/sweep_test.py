@@ -11,8 +11,8 @@ import netCDF4
 import numpy
 import xarray
 
-from program import (CONFIGS, DONE, LIMIT, NUMERICAL, PROGRAM, STOPPED, USAGE, WAVE, ProgramTest,
-                     environment)
+from program import (CONFIGS, DONE, FILE, LIMIT, NUMERICAL, PROGRAM, STOPPED, USAGE, WAVE,
+                     ProgramTest, contents, environment)
 
 SWEEP = """
 scene: {scene}
@@ -222,6 +222,32 @@ list: [{{time.scheme: rk4}}, {{operators: [{{use: org.example.hostile}}]}}]
         self.run_sweep(sweep, DONE, "--member", "1")
         self.assertEqual([self.record(index)["status"] for index in range(2)], ["waiting", "done"])
         self.assertFalse(self.checkpoints(1))
+
+    def test_a_member_that_is_running_is_not_started_again(self):
+        sweep = self.sweep("0.1, 4e-3")
+        process = self.start(sweep, "--member", "1")
+        self.wait_until(lambda: self.checkpoints(1) or process.poll() is not None)
+        (self.member(1) / "log.txt").write_text("what it has written")
+        before = os.stat(self.member(1) / "member.json")
+        words = self.run_sweep(sweep, FILE, "--member", "1")
+        self.assertIn("the folder is in use by process", words)
+        self.assertEqual((self.member(1) / "log.txt").read_text(), "what it has written")
+        self.assertEqual(os.stat(self.member(1) / "member.json").st_ino, before.st_ino)
+        self.assertEqual(self.record(1)["status"], "running")
+        words, _ = process.communicate(timeout=LIMIT)
+        self.assertEqual(process.returncode, DONE, words)
+        self.assertEqual(self.record(1)["status"], "done")
+
+    def test_two_sweeps_do_not_share_a_folder(self):
+        sweep = self.sweep("0.1")
+        self.run_sweep(sweep, DONE)
+        before = contents(self.folder / "out")
+        (self.folder / "other").mkdir()
+        other = shutil.copy(sweep, self.folder / "other")
+        words = self.run_sweep(other, FILE)
+        self.assertIn(f"holds the sweep 'sweep' of {sweep}, not 'sweep' of {other}", words)
+        self.assertEqual(contents(self.folder / "out"), before)
+        self.run_sweep(other, DONE, "--force")
 
     def test_mistakes_leave_nothing_behind(self):
         words = self.run_sweep(self.sweep("0.1, -1, fast"), USAGE)

@@ -310,7 +310,7 @@ const scene::Table& sweep_table() {
                      "Series of which the spread over the members is drawn.")
             .otherwise("a few"),
         scene::value("slurm", &Sweep::slurm, "1",
-                     "Further options of the batch script: ['--time=01:00:00', "
+                     "Further options of the batch script, in their long form: ['--time=01:00:00', "
                      "'--partition=small'].")
             .otherwise("none")};
     sweep.finish = complete_sweep;

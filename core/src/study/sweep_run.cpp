@@ -18,6 +18,7 @@
 #include "study/member_results.hpp"
 #include "study/sweep_collection.hpp"
 #include "study/sweep_files.hpp"
+#include "study/sweep_identity.hpp"
 
 namespace pileus::study {
 
@@ -254,6 +255,14 @@ SweepResult run_sweep(const SweepRequest& request, const SweepProgress::Options&
   if (request.member && *request.member >= members)
     throw Error(ExitCode::usage, fmt::format("the sweep has the members 0 to {}, not {}",
                                              members - 1, *request.member));
+  // Jobs of a batch system and a collection share the folder with whoever runs the sweep.
+  std::optional<output::RunDirectory> held;
+  if (request.collect_only && !fs::exists(result.directory / "members"))
+    throw Error(ExitCode::usage, fmt::format("{}: holds no members of a sweep to collect",
+                                             result.directory.string()));
+  if (!request.collect_only && !request.member)
+    held.emplace(result.directory, output::RunDirectory::Mode::resume);
+  claim_folder(result.directory, result.ensemble.sweep, request.force);
   std::vector<std::string> problems;
   result.records = load_records(result.directory, result.ensemble, problems);
   for (const std::string& problem : problems) out << problem << '\n';
@@ -263,15 +272,9 @@ SweepResult run_sweep(const SweepRequest& request, const SweepProgress::Options&
     report_failures(result, request.member, out);
     return result;
   }
-  // Jobs of a batch system and a collection share the folder with whoever runs the sweep.
-  std::optional<output::RunDirectory> held;
   if (!request.collect_only) {
-    held.emplace(result.directory, output::RunDirectory::Mode::resume);
     write_member_lists(result);
     run_members(request, result, progress, run);
-  } else if (!fs::exists(result.directory / "members")) {
-    throw Error(ExitCode::usage, fmt::format("{}: holds no members of a sweep to collect",
-                                             result.directory.string()));
   }
   write_member_lists(result);
   out << count_words(result) << '\n';

@@ -11,6 +11,7 @@
 #include "study/member_results.hpp"
 #include "study/scene_settings.hpp"
 #include "study/sweep_files.hpp"
+#include "study/sweep_identity.hpp"
 
 namespace pileus::study {
 
@@ -93,6 +94,7 @@ void hand_to_slurm(const SweepRequest& request, bool submit, std::ostream& out) 
   SweepResult result;
   result.ensemble = read_ensemble(request.path);
   result.directory = sweep_folder(request, result.ensemble.sweep);
+  claim_folder(result.directory, result.ensemble.sweep, request.force);
   std::vector<std::string> problems;
   result.records = load_records(result.directory, result.ensemble, problems);
   for (const std::string& problem : problems) out << problem << '\n';

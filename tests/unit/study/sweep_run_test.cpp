@@ -75,6 +75,16 @@ product: [{key: time.step.alpha, values: [0.1, 0.2, 0.3, 0.4]}]
     table_.str("");
     return run_sweep(request_, {.quiet = true}, messages, table_, runner);
   }
+  /// Why the sweep is refused for its folder; empty when it is not.
+  std::string refusal() {
+    try {
+      run(MadeUpMembers());
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::file);
+      return error.what();
+    }
+    return {};
+  }
   fs::path out(const std::string& name) const { return folder_ / "out" / name; }
   std::string text_of(const std::string& name) const { return output::read_text_file(out(name)); }
 
@@ -271,6 +281,72 @@ TEST_F(RunSweep, NothingOfAnEarlierCollectionStaysBesideNewTables) {
   EXPECT_NE(table_.str().find("members: 0002, 0003 of an earlier, larger sweep"), std::string::npos)
       << table_.str();
   EXPECT_TRUE(fs::exists(out("members/0003")));
+}
+
+TEST_F(RunSweep, AFolderBelongsToOneSweep) {
+  MadeUpMembers members;
+  run(members);
+  const std::string collected = text_of("ensemble.nc"), mine = request_.path;
+  const std::string text = output::read_text_file(mine);
+  request_.path = write("other/steps.yaml", "scene: ../cube.yaml\nseeds: 1\n");
+  for (const bool collect_only : {false, true}) {
+    request_.collect_only = collect_only;
+    EXPECT_EQ(refusal(), out("").parent_path().string() +
+                             ": the folder holds the sweep 'steps' of " + mine +
+                             ", not 'steps' of " + request_.path +
+                             ". Choose another folder with --out, or take this one over with "
+                             "--force.");
+  }
+  request_.member = 0;
+  EXPECT_NE(refusal(), "");
+  EXPECT_THROW(hand_to_slurm(request_, false, table_), Error);
+  request_.member.reset();
+  EXPECT_EQ(text_of("ensemble.nc"), collected);
+  EXPECT_EQ(members.count(), 4);
+  request_.collect_only = false;
+  request_.force = true;
+  EXPECT_EQ(run(members).code(), ExitCode::done);
+  request_.force = false;
+  EXPECT_EQ(refusal(), "");
+  request_.path = mine;
+  EXPECT_NE(refusal(), "");
+}
+
+TEST_F(RunSweep, ASweepThatHasMovedKeepsItsFolder) {
+  MadeUpMembers members;
+  members.heal();
+  fs::create_directories(folder_ / "a");
+  for (const char* name : {"cube.yaml", "steps.yaml"})
+    fs::rename(folder_ / name, folder_ / "a" / name);
+  request_.path = (folder_ / "a/steps.yaml").string();
+  request_.directory = (folder_ / "a/out").string();
+  run(members);
+  fs::copy(folder_ / "a", folder_ / "copy", fs::copy_options::recursive);
+  request_.path = (folder_ / "copy/steps.yaml").string();
+  request_.directory = (folder_ / "copy/out").string();
+  EXPECT_EQ(refusal(), "");  // found by the way from the folder
+  fs::rename(folder_ / "copy/steps.yaml", folder_ / "copy/cubes.yaml");
+  request_.path = (folder_ / "copy/cubes.yaml").string();
+  EXPECT_NE(refusal(), "");  // another name, and its file is gone
+  write("copy/cubes.yaml", "sweep: {name: steps}\nscene: cube.yaml\nseeds: 1\n");
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(
+      nlohmann::json::parse(output::read_text_file(folder_ / "copy/out/identity.json"))["file"],
+      request_.path);
+}
+
+TEST_F(RunSweep, ResultsOfUnknownOriginAreNotOverwritten) {
+  for (const char* name : {"ensemble.nc", "members/0000/series.nc", "members.csv"}) {
+    write(std::string("out/") + name, "somebody's");
+    EXPECT_NE(refusal().find("does not say of which sweep"), std::string::npos) << name;
+    EXPECT_EQ(text_of(name), "somebody's");
+    EXPECT_FALSE(fs::exists(out("identity.json")));
+    fs::remove_all(folder_ / "out");
+  }
+  write("out/sweep.json", R"({"sweep": "steps"})");  // of a release without identity.json
+  write("out/members/0000/member.json", "{}");
+  write("out/notes.txt", "mine");
+  EXPECT_EQ(refusal(), "");
 }
 
 TEST_F(RunSweep, MistakesLeaveNothingBehind) {
