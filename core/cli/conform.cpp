@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/search.hpp"
+#include "number_check.hpp"
 #include "verb.hpp"
 
 namespace pileus::cli {
@@ -37,11 +38,11 @@ void add_conform(CLI::App& app, Action& action) {
       ->delimiter(',')
       ->type_name("CHECKS");
   verb->add_option("--seed", request->seed, "Of the first random state; default: 1")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("N");
   verb->add_option("--time-limit", request->time_limit,
                    "Seconds of processor time for one check; default: 60")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("S");
   verb->callback([&action, request, library, as_json] {
     action = [request, library, as_json] {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/terminal.hpp"
+#include "number_check.hpp"
 #include "study/sweep_run.hpp"
 #include "study/sweep_slurm.hpp"
 #include "verb.hpp"
@@ -60,7 +61,7 @@ void add_sweep(CLI::App& app, Action& action) {
   add_ways_to_run(*verb, *options);
   auto* member = verb->add_option("--member", options->member,
                                   "Run this member only and collect nothing; they count from 0")
-                     ->check(CLI::NonNegativeNumber)
+                     ->check(not_negative())
                      ->type_name("INDEX");
   auto* collect = verb->add_flag("--collect", options->request.collect_only,
                                  "Run nothing; collect the members that are done");
