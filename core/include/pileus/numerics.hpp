@@ -76,9 +76,8 @@ inline int most_evaluations(double width, double tolerance) {
 /// third step a bisection. Small steps alone are no end, since next to a steep side they creep: the
 /// bracket is closed from its other side.
 ///
-/// Ensures    low ≤ x ≤ high, within `tolerance` of where f changes its sign; where it does not, x
-/// is
-///            the end next to the root
+/// Ensures    low ≤ x ≤ high, within `tolerance` of where f changes its sign; the end next to the
+///            root where it does not. A NaN between the ends counts as above the root
 /// Errors     converged == false where the function does not change its sign
 template <class F>
 Root bracketed_root(F&& f, double low, double high, double tolerance) {

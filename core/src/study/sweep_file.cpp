@@ -163,8 +163,8 @@ void read_listed_seeds(Reader& reader, const Node& node, std::vector<std::uint64
     return reader.problem(node,
                           "'seeds' needs at least one seed, or their number; found an empty "
                           "list");
+  Node one = node;
   for (const Node& item : node.items) {
-    Node one = node;
     one.items = {item};
     const std::size_t before = seeds.size();
     read_seeds(reader, one, seeds);
